@@ -1,0 +1,18 @@
+//! The scene as the graphics wing knows it: arenas, a command list, and the proof that both are sound.
+//!
+//! Lowering builds a [`Program`]; [`validate`] turns it into a [`Valid`], the only thing a renderer takes. A `write` sees
+//! the arenas through a [`SceneView`], a set of lengths, so that nothing is copied.
+//!
+//! Never here: text, rays, anything that edits a finished program.
+
+mod arena;
+mod program;
+mod scene;
+mod validate;
+mod view;
+
+pub use arena::{Arena, Handle};
+pub use program::{Command, Origins, Program};
+pub use scene::{Cylinder, Light, Sphere, Surface};
+pub use validate::{EquationId, Equations, Valid, Violation, validate};
+pub use view::{Registers, SceneView};

@@ -1,0 +1,114 @@
+//! What a render is asked for, and what it counted.
+
+use std::ops::AddAssign;
+
+/// The size of an image in pixels, each side 1 to 65535.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Size {
+    width: u32,
+    height: u32,
+}
+
+impl Size {
+    /// The longest side.
+    pub const MAX_SIDE: u32 = 65535;
+
+    /// Makes a size; `None` when a side is 0 or above [`Size::MAX_SIDE`].
+    #[must_use]
+    pub fn new(width: u32, height: u32) -> Option<Self> {
+        let sides = 1..=Self::MAX_SIDE;
+        (sides.contains(&width) && sides.contains(&height)).then_some(Self { width, height })
+    }
+
+    /// Returns the number of columns.
+    #[must_use]
+    pub fn width(self) -> u32 {
+        self.width
+    }
+
+    /// Returns the number of rows.
+    #[must_use]
+    pub fn height(self) -> u32 {
+        self.height
+    }
+}
+
+impl Default for Size {
+    fn default() -> Self {
+        Self { width: 300, height: 300 }
+    }
+}
+
+/// Which rules shade a hit.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Part {
+    /// Spheres only, diffuse light only, no shadows.
+    A,
+    /// The whole language.
+    #[default]
+    B,
+}
+
+/// Where in its pixel a sample lies.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SampleAt {
+    /// The upper left corner, as in the original images.
+    #[default]
+    Corner,
+    /// The centre.
+    Centre,
+}
+
+/// What a render is asked for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Settings {
+    /// Pixels of the image.
+    pub size: Size,
+    /// Which rules shade a hit.
+    pub part: Part,
+    /// N of the N×N samples a pixel, 1 to [`Settings::MAX_SAMPLES`].
+    pub samples: u32,
+    /// The point about which the samples of a pixel lie.
+    pub sample_at: SampleAt,
+    /// The last level that is shaded; the eye ray has level 0.
+    pub max_level: u32,
+}
+
+impl Settings {
+    /// The most samples along a side of a pixel.
+    pub const MAX_SAMPLES: u32 = 256;
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { size: Size::default(), part: Part::B, samples: 1, sample_at: SampleAt::Corner, max_level: 8 }
+    }
+}
+
+/// What a render has done. Pixels settled twice count their rays twice.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+pub struct Counts {
+    /// Rays from the eye.
+    pub eye_rays: u64,
+    /// Rays from a hit along the mirror direction.
+    pub reflected_rays: u64,
+    /// Rays from a hit to a light.
+    pub shadow_rays: u64,
+    /// Tests of one ray against one primitive.
+    pub tests: u64,
+    /// Pixels that binary64 could not decide and double-double did.
+    pub refined_pixels: u64,
+    /// Decisions that double-double could not make either, made by the rule for ties.
+    pub ties: u64,
+}
+
+impl AddAssign for Counts {
+    fn add_assign(&mut self, other: Self) {
+        self.eye_rays += other.eye_rays;
+        self.reflected_rays += other.reflected_rays;
+        self.shadow_rays += other.shadow_rays;
+        self.tests += other.tests;
+        self.refined_pixels += other.refined_pixels;
+        self.ties += other.ties;
+    }
+}
