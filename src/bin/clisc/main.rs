@@ -1,3 +1,32 @@
-//! The command line.
+//! The command line: reads arguments and files, calls the library, prints.
+//!
+//! Everything that touches the world is here: files, the clock, signals, the terminal. What a scene means is not.
 
-fn main() {}
+mod args;
+mod commands;
+mod outcome;
+mod print;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use crate::args::{Cli, Command};
+use crate::outcome::Outcome;
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    run(&cli).unwrap_or_else(|error| {
+        print::to_stderr(&format!("error: {error:#}\n"));
+        Outcome::Environment.into()
+    })
+}
+
+fn run(cli: &Cli) -> anyhow::Result<ExitCode> {
+    match &cli.command {
+        Command::Check(args) => commands::check::run(args),
+        Command::Run(args) => commands::run::run(args),
+        Command::Ir(args) => commands::ir::run(args),
+        Command::Explain(args) => commands::explain::run(args),
+    }
+}

@@ -1,0 +1,289 @@
+//! What the command line says.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
+use clisc::trace::{self, Settings, Size};
+
+/// Compiles and renders `.cli` scenes.
+#[derive(Debug, Parser)]
+#[command(version, arg_required_else_help = true, after_help = CLI_EXAMPLES)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+const CLI_EXAMPLES: &str = "\
+Examples:
+  clisc check scenes               say what is wrong with the scenes below a folder
+  clisc run i1.cli                 render i1.cli and save its images here
+  clisc ir i1.cli --emit commands  show what i1.cli was compiled to
+  clisc explain E0203              explain a code that a message showed
+
+Exit codes: 0 fine, 1 a scene has errors, 2 wrong usage or a fault outside the scene, 130 interrupted.";
+
+/// What to do.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Checks scenes and says what is wrong with them.
+    Check(CheckArgs),
+    /// Renders scenes and saves their images.
+    Run(RunArgs),
+    /// Shows what a scene becomes at a stage of the compiler.
+    Ir(IrArgs),
+    /// Explains a code, with a failing scene and its repair.
+    Explain(ExplainArgs),
+}
+
+/// Arguments of `clisc check`.
+#[derive(Args, Debug)]
+#[command(after_help = CHECK_EXAMPLES)]
+pub struct CheckArgs {
+    /// Scenes; a folder means every .cli file below it, - is standard input.
+    #[arg(value_name = "PATH", required = true)]
+    pub paths: Vec<PathBuf>,
+    /// How to show what was found.
+    #[arg(long, value_enum, default_value_t)]
+    pub format: CheckFormat,
+    /// Take warnings for errors.
+    #[arg(long)]
+    pub deny_warnings: bool,
+}
+
+const CHECK_EXAMPLES: &str = "\
+Examples:
+  clisc check two.cli                  every mistake with its place and its repair
+  clisc check scenes --format short    one line each: path:line:column
+  clisc check - --format json < a.cli  for other programs
+  clisc check scenes --deny-warnings   a gate: exit code 1 when there is anything to say";
+
+/// How `clisc check` shows what it found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum CheckFormat {
+    /// The lines of the scene with the mistakes marked.
+    #[default]
+    Human,
+    /// One line each.
+    Short,
+    /// One JSON document.
+    Json,
+}
+
+/// Arguments of `clisc run`.
+#[derive(Args, Debug)]
+#[command(after_help = RUN_EXAMPLES)]
+pub struct RunArgs {
+    /// Scenes; - is standard input.
+    #[arg(value_name = "SCENE", required = true)]
+    pub scenes: Vec<PathBuf>,
+    /// The folder below which images are saved; made when missing.
+    #[arg(short, long, value_name = "DIR", default_value = ".")]
+    pub out_dir: PathBuf,
+    /// Width and height of the images in pixels, each at most 65535.
+    #[arg(long, value_name = "WxH", default_value = "300x300", value_parser = parse_size)]
+    pub size: Size,
+    /// The rules: a, spheres with diffuse light only; b, the whole language.
+    #[arg(long, value_enum, default_value_t, hide_possible_values = true, ignore_case = true)]
+    pub part: Part,
+    /// Threads to render with; 0 means one a core.
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
+    pub threads: usize,
+    /// Samples a pixel, N by N, at most 256; smooths edges.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u32).range(1..=i64::from(Settings::MAX_SAMPLES)))]
+    pub samples: u32,
+    /// Where in its pixel a sample lies.
+    #[arg(long, value_enum, default_value_t)]
+    pub sample_at: SampleAt,
+    /// The last level that is shaded: the eye ray has level 0, its reflection level 1, and so on.
+    #[arg(long, value_name = "N", default_value_t = 8)]
+    pub max_level: u32,
+    /// Print times and counts; --stats=json prints one JSON document in place of the other results.
+    #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, require_equals = true, default_missing_value = "table")]
+    pub stats: Option<StatsFormat>,
+    /// Print nothing but errors.
+    #[arg(short, long)]
+    pub quiet: bool,
+    /// Check everything, render and save nothing.
+    #[arg(long)]
+    pub dry_run: bool,
+}
+
+const RUN_EXAMPLES: &str = "\
+Examples:
+  clisc run i1.cli                               300x300, saved in this folder
+  clisc run scenes/*.cli -o out --size 1920x1080
+  clisc run i1.cli --samples 4 --sample-at centre
+  clisc run i1.cli --stats=json --quiet          times and counts for other programs
+  clisc run - < i1.cli                           the scene from standard input
+
+A scene can write only below the folder of --out-dir. An image is saved whole or not at all.";
+
+impl RunArgs {
+    /// Returns what every render is asked for.
+    pub fn settings(&self) -> Settings {
+        Settings {
+            size: self.size,
+            part: self.part.into(),
+            samples: self.samples,
+            sample_at: self.sample_at.into(),
+            max_level: self.max_level,
+        }
+    }
+}
+
+/// Which rules shade a hit.
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+pub enum Part {
+    /// Spheres with diffuse light only.
+    A,
+    /// The whole language.
+    #[default]
+    B,
+}
+
+impl From<Part> for trace::Part {
+    fn from(part: Part) -> Self {
+        match part {
+            Part::A => Self::A,
+            Part::B => Self::B,
+        }
+    }
+}
+
+/// Where in its pixel a sample lies.
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+pub enum SampleAt {
+    /// The upper left corner, as in the original images.
+    #[default]
+    Corner,
+    /// The centre.
+    #[value(alias = "center")]
+    Centre,
+}
+
+impl From<SampleAt> for trace::SampleAt {
+    fn from(at: SampleAt) -> Self {
+        match at {
+            SampleAt::Corner => Self::Corner,
+            SampleAt::Centre => Self::Centre,
+        }
+    }
+}
+
+/// How `clisc run` shows times and counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum StatsFormat {
+    /// A table for people.
+    Table,
+    /// One JSON document.
+    Json,
+}
+
+/// Arguments of `clisc ir`.
+#[derive(Args, Debug)]
+#[command(after_help = IR_EXAMPLES)]
+pub struct IrArgs {
+    /// The scene; - is standard input.
+    #[arg(value_name = "SCENE")]
+    pub scene: PathBuf,
+    /// The stage to show.
+    #[arg(long, value_enum, default_value_t)]
+    pub emit: Emit,
+    /// How to show it.
+    #[arg(long, value_enum, default_value_t)]
+    pub format: DumpFormat,
+}
+
+const IR_EXAMPLES: &str = "\
+Examples:
+  clisc ir i1.cli                             the command list, to be read like assembler
+  clisc ir i1.cli --emit tokens
+  clisc ir i1.cli --emit ir --format json | jq";
+
+/// A stage of the compiler.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Emit {
+    /// The tokens, comments and line ends among them.
+    Tokens,
+    /// The syntax tree.
+    Ast,
+    /// Lights, surfaces and primitives.
+    Ir,
+    /// The command list of the executor.
+    #[default]
+    Commands,
+}
+
+/// How `clisc ir` shows a stage.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum DumpFormat {
+    /// For people.
+    #[default]
+    Text,
+    /// For other programs.
+    Json,
+}
+
+/// Arguments of `clisc explain`.
+#[derive(Args, Debug)]
+#[command(after_help = EXPLAIN_EXAMPLES)]
+pub struct ExplainArgs {
+    /// The code, such as E0203; without it every code is listed.
+    #[arg(value_name = "CODE")]
+    pub code: Option<String>,
+}
+
+const EXPLAIN_EXAMPLES: &str = "\
+Examples:
+  clisc explain        every code with its title
+  clisc explain E0203  what it means, a scene that has it, and its repair";
+
+/// Parses `WxH`; a fault explains itself.
+fn parse_size(text: &str) -> Result<Size, String> {
+    let (width, height) = text
+        .split_once(['x', 'X', '×'])
+        .ok_or_else(|| "a size is width x height without spaces, such as 300x200".to_owned())?;
+    let (width, height) = (parse_side("width", width)?, parse_side("height", height)?);
+    Size::new(width, height).ok_or_else(|| "a side is out of range".to_owned())
+}
+
+fn parse_side(name: &str, digits: &str) -> Result<u32, String> {
+    if digits.is_empty() || !digits.bytes().all(|byte| byte.is_ascii_digit()) {
+        return Err(format!("the {name} `{digits}` is not a whole number; a size is such as 300x200"));
+    }
+    match digits.parse::<u32>() {
+        Ok(0) => Err(format!("the {name} is 0; an image has at least one pixel a side")),
+        Ok(side) if side <= Size::MAX_SIDE => Ok(side),
+        _ => Err(format!("the {name} {digits} is beyond the limit of {} pixels a side", Size::MAX_SIDE)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_definition_is_sound() {
+        <Cli as clap::CommandFactory>::command().debug_assert();
+    }
+
+    #[test]
+    fn a_size_parses_or_explains_itself() {
+        assert_eq!(parse_size("300x200"), Ok(Size::new(300, 200).unwrap()));
+        assert_eq!(parse_size("65535X1"), Ok(Size::new(65535, 1).unwrap()));
+        for (text, words) in [
+            ("300", "such as 300x200"),
+            ("300x", "the height `` is not a whole number"),
+            ("3.5x2", "the width `3.5` is not a whole number"),
+            ("-3x2", "the width `-3` is not a whole number"),
+            ("0x2", "the width is 0"),
+            ("2x65536", "the height 65536 is beyond the limit of 65535"),
+            ("99999999999999999999x2", "beyond the limit of 65535"),
+            ("1x2x3", "the height `2x3` is not"),
+        ] {
+            let message = parse_size(text).unwrap_err();
+            assert!(message.contains(words), "{text}: {message}");
+        }
+    }
+}

@@ -1,0 +1,6 @@
+//! One file a subcommand.
+
+pub mod check;
+pub mod explain;
+pub mod ir;
+pub mod run;

@@ -1,0 +1,28 @@
+//! How a command ended, as its exit code says it.
+
+use std::process::ExitCode;
+
+/// How a command ended. The order is that of gravity: of several scenes the worst counts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Outcome {
+    /// All went well.
+    #[default]
+    Fine,
+    /// A scene has errors.
+    SceneErrors,
+    /// The command line or the world is at fault: a file that cannot be read, a full disk.
+    Environment,
+    /// Ended by Ctrl-C or SIGTERM.
+    Interrupted,
+}
+
+impl From<Outcome> for ExitCode {
+    fn from(outcome: Outcome) -> Self {
+        Self::from(match outcome {
+            Outcome::Fine => 0,
+            Outcome::SceneErrors => 1,
+            Outcome::Environment => 2,
+            Outcome::Interrupted => 130,
+        })
+    }
+}

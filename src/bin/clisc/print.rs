@@ -1,0 +1,42 @@
+//! The one place that prints.
+//!
+//! A reader that has seen enough (`clisc ir x.cli | head`) is no fault: a broken pipe is ignored.
+
+use std::io::{self, ErrorKind, IsTerminal, Write};
+
+use anyhow::Context;
+
+/// Prints results to standard output.
+///
+/// # Errors
+/// When they cannot be written, except that nobody reads them any more.
+pub fn to_stdout(text: &str) -> anyhow::Result<()> {
+    let mut stdout = io::stdout().lock();
+    let written = stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush());
+    match written {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error).context("cannot write to standard output"),
+        _ => Ok(()),
+    }
+}
+
+/// Prints messages to standard error. There is no place left to say that this failed.
+pub fn to_stderr(text: &str) {
+    let mut stderr = io::stderr().lock();
+    let _ = stderr.write_all(text.as_bytes()).and_then(|()| stderr.flush());
+}
+
+/// Tells whether text on standard output may be coloured: it is a terminal and `NO_COLOR` is unset or empty.
+pub fn stdout_has_color() -> bool {
+    io::stdout().is_terminal() && environment_allows_color()
+}
+
+/// Tells whether text on standard error may be coloured: it is a terminal and `NO_COLOR` is unset or empty.
+pub fn stderr_has_color() -> bool {
+    io::stderr().is_terminal() && environment_allows_color()
+}
+
+fn environment_allows_color() -> bool {
+    let no_color = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
+    let dumb = std::env::var_os("TERM").is_some_and(|value| value == "dumb");
+    !no_color && !dumb
+}
