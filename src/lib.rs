@@ -1,5 +1,6 @@
 //! clisc: compiler and ray tracer for `.cli` scenes.
 
+mod compile;
 pub mod diag;
 pub mod exec;
 pub mod image;
@@ -11,3 +12,5 @@ pub mod syntax;
 #[cfg(feature = "testing")]
 pub mod testing;
 pub mod trace;
+
+pub use compile::{Compilation, compile};

@@ -1,7 +1,8 @@
 //! Every code, once.
 //!
 //! Codes are never reused. The first two digits are the family: E01 text, E02 command shape, E03 meaning, E04 validation,
-//! E05 execution; a warning has the same families behind a W.
+//! E05 execution; a warning has the same families behind a W. Each code has a page `explain/<CODE>.md`; a test fails when
+//! table and folder disagree.
 
 /// How much a finding matters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
@@ -11,6 +12,17 @@ pub enum Severity {
     Warning,
     /// The scene cannot be rendered.
     Error,
+}
+
+impl Severity {
+    /// Returns the word that every format prints.
+    #[must_use]
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Warning => "warning",
+            Self::Error => "error",
+        }
+    }
 }
 
 /// A code with what `clisc explain` says of it.
@@ -24,4 +36,63 @@ pub struct Code {
     pub title: &'static str,
     /// The long text, Markdown, with a failing scene and its repair.
     pub explanation: &'static str,
+}
+
+/// Declares each code as a static and [`ALL`] as the list of them.
+macro_rules! codes {
+    ($($name:ident = $severity:ident $id:literal $title:literal;)*) => {
+        $(
+            #[doc = concat!("`", $id, "`: ", $title, ".")]
+            pub static $name: Code = Code {
+                id: $id,
+                severity: Severity::$severity,
+                title: $title,
+                explanation: include_str!(concat!("explain/", $id, ".md")),
+            };
+        )*
+
+        /// Every code, in the order of this table.
+        pub static ALL: &[&Code] = &[$(&$name),*];
+    };
+}
+
+codes! {
+    // E01: text.
+    INVALID_TEXT = Error "E0101" "text that is not UTF-8";
+    FOREIGN_CHARACTER = Error "E0102" "a character that cannot stand here";
+    // E02: the shape of a command.
+    UNKNOWN_COMMAND = Error "E0201" "unknown command";
+    NO_COMMAND = Error "E0202" "a line that does not begin with a command";
+    MISSING_ARGUMENT = Error "E0203" "missing argument";
+    SURPLUS_ARGUMENT = Error "E0204" "surplus argument";
+    MALFORMED_NUMBER = Error "E0205" "malformed number";
+    NOT_FINITE = Error "E0206" "infinity or NaN in place of a number";
+    NUMBER_OVERFLOW = Error "E0207" "number too large";
+    MISSING_FILE_NAME = Error "E0208" "missing file name";
+    NOT_A_PNG = Error "E0209" "file name that does not end in `.png`";
+    UNTERMINATED_QUOTE = Error "E0210" "quote that is not closed";
+    // E03: meaning.
+    NO_SURFACE = Error "E0301" "object before any surface";
+    // E04: values.
+    FOV_OUT_OF_RANGE = Error "E0401" "field of view out of range";
+    RADIUS_NOT_POSITIVE = Error "E0402" "radius not above 0";
+    HEIGHTS_NOT_RISING = Error "E0403" "`ymin` not below `ymax`";
+    NEGATIVE_SHININESS = Error "E0404" "negative shininess";
+    // E05: execution.
+    ABSOLUTE_NAME = Error "E0501" "absolute file name";
+    PARENT_FOLDER = Error "E0502" "file name that climbs with `..`";
+    LINK_LEADS_OUT = Error "E0503" "link that leads out of the output folder";
+    // W03: meaning.
+    NO_WRITE = Warning "W0301" "no `write`";
+    NO_FOV = Warning "W0302" "no `fov` before a `write`";
+    OUTSIDE_UNIT_RANGE = Warning "W0303" "colour or coefficient outside 0 to 1";
+    MANY_LIGHTS = Warning "W0304" "more than ten lights";
+    BEHIND_LAST_WRITE = Warning "W0305" "commands behind the last `write`";
+    WRITTEN_TWICE = Warning "W0306" "two `write`s of one name";
+}
+
+/// Returns the code with this id, upper or lower case.
+#[must_use]
+pub fn find(id: &str) -> Option<&'static Code> {
+    ALL.iter().copied().find(|code| code.id.eq_ignore_ascii_case(id))
 }

@@ -7,6 +7,7 @@
 
 pub mod codes;
 mod diagnostic;
+pub mod render;
 
 pub use codes::{Code, Severity};
 pub use diagnostic::{Diagnostic, Label};

@@ -1,0 +1,35 @@
+//! The language wing in one step: text in, program and diagnostics out.
+
+use crate::diag::Diagnostic;
+use crate::ir::Program;
+use crate::lower::lower;
+use crate::source::Source;
+use crate::syntax::parse;
+
+/// A scene as far as it could be understood.
+#[derive(Debug)]
+pub struct Compilation {
+    /// The program; not to be rendered when the scene [has errors](Compilation::has_errors).
+    pub program: Program,
+    /// All that was found, in the order of the text.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+impl Compilation {
+    /// Tells whether the scene cannot be rendered.
+    #[must_use]
+    pub fn has_errors(&self) -> bool {
+        self.diagnostics.iter().any(Diagnostic::is_error)
+    }
+}
+
+/// Parses and lowers a scene.
+#[must_use]
+pub fn compile(source: &Source) -> Compilation {
+    let parse = parse(source);
+    let lowered = lower(source, &parse.file);
+    let mut diagnostics = parse.diagnostics;
+    diagnostics.extend(lowered.diagnostics);
+    diagnostics.sort_by_key(|diagnostic| diagnostic.primary.span.start);
+    Compilation { program: lowered.program, diagnostics }
+}
