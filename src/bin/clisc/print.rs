@@ -2,21 +2,27 @@
 //!
 //! A reader that has seen enough (`clisc ir x.cli | head`) is no fault: a broken pipe is ignored.
 
-use std::io::{self, ErrorKind, IsTerminal, Write};
+use std::io::{self, BufWriter, ErrorKind, IsTerminal, Write};
 
 use anyhow::Context;
+
+/// Returns standard output, buffered, for results of any length; it has to be flushed.
+pub fn stdout() -> impl Write {
+    BufWriter::new(Patient(io::stdout().lock()))
+}
+
+/// Returns standard error, buffered, for messages of any length; it has to be flushed.
+pub fn stderr() -> impl Write {
+    BufWriter::new(Patient(io::stderr().lock()))
+}
 
 /// Prints results to standard output.
 ///
 /// # Errors
 /// When they cannot be written, except that nobody reads them any more.
 pub fn to_stdout(text: &str) -> anyhow::Result<()> {
-    let mut stdout = io::stdout().lock();
-    let written = stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush());
-    match written {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error).context("cannot write to standard output"),
-        _ => Ok(()),
-    }
+    let mut stdout = Patient(io::stdout().lock());
+    stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()).context("cannot write to standard output")
 }
 
 /// Prints messages to standard error. There is no place left to say that this failed.
@@ -25,12 +31,12 @@ pub fn to_stderr(text: &str) {
     let _ = stderr.write_all(text.as_bytes()).and_then(|()| stderr.flush());
 }
 
-/// Tells whether text on standard output may be coloured: it is a terminal and `NO_COLOR` is unset or empty.
+/// Tells whether text on standard output may be coloured: it is a terminal, and `NO_COLOR` is unset or empty.
 pub fn stdout_has_color() -> bool {
     io::stdout().is_terminal() && environment_allows_color()
 }
 
-/// Tells whether text on standard error may be coloured: it is a terminal and `NO_COLOR` is unset or empty.
+/// Tells whether text on standard error may be coloured: it is a terminal, and `NO_COLOR` is unset or empty.
 pub fn stderr_has_color() -> bool {
     io::stderr().is_terminal() && environment_allows_color()
 }
@@ -39,4 +45,23 @@ fn environment_allows_color() -> bool {
     let no_color = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
     let dumb = std::env::var_os("TERM").is_some_and(|value| value == "dumb");
     !no_color && !dumb
+}
+
+/// A writer that takes it calmly when nobody reads: what is left goes nowhere.
+struct Patient<W>(W);
+
+impl<W: Write> Write for Patient<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match self.0.write(bytes) {
+            Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(bytes.len()),
+            result => result,
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        match self.0.flush() {
+            Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
+            result => result,
+        }
+    }
 }
