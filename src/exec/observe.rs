@@ -1,0 +1,65 @@
+//! What an execution tells while it runs.
+
+use std::time::Duration;
+
+use crate::trace::{Counts, Size};
+
+/// Watches an execution. Called from the thread that executes, except for the clock; `()` watches nothing.
+pub trait Observer: Sync {
+    /// Is told what happened.
+    fn event(&self, event: &Event<'_>) {
+        let _ = event;
+    }
+
+    /// Returns the time since a fixed moment; the library has no clock of its own, so by default it stands still.
+    fn now(&self) -> Duration {
+        Duration::ZERO
+    }
+}
+
+impl Observer for () {}
+
+/// Something that happened.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub enum Event<'a> {
+    /// A `write` begins.
+    Started {
+        /// Which `write` of the program it is, from 0.
+        write_idx: usize,
+        /// The name as in the source.
+        name: &'a str,
+        /// Pixels of the image.
+        size: Size,
+    },
+    /// A band has been traced.
+    RowsDone {
+        /// Which `write` of the program it is, from 0.
+        write_idx: usize,
+        /// The rows traced so far.
+        n_rows: u32,
+    },
+    /// The image is saved.
+    Finished(&'a WriteReport),
+}
+
+/// What a `write` made and what it took.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct WriteReport {
+    /// Which `write` of the program it is, from 0.
+    pub write_idx: usize,
+    /// The name as in the source.
+    pub name: String,
+    /// Pixels of the image.
+    pub size: Size,
+    /// Length of the file.
+    pub n_bytes: u64,
+    /// Rays and tests.
+    pub counts: Counts,
+    /// Time spent tracing.
+    pub trace_time: Duration,
+    /// Time spent encoding and writing, most of it while tracing.
+    pub encode_time: Duration,
+    /// Time spent making the file durable and giving it its name.
+    pub save_time: Duration,
+}
