@@ -1,0 +1,32 @@
+//! Eye rays.
+
+use crate::math::{Real, Vector, tan_half_degrees};
+use crate::trace::ray::Ray;
+
+/// The eye at the origin, looking along −z.
+#[derive(Clone, Copy, Debug)]
+pub struct Camera<R> {
+    /// The share of the view's half height that one step of a sample's place makes, at z = −1.
+    step: R,
+}
+
+impl<R: Real> Camera<R> {
+    /// Makes the camera of a vertical field of view in degrees for places counted so that half the image's height has
+    /// `steps_per_height` steps.
+    pub fn new(fov_deg: f64, steps_per_height: u32) -> Self {
+        let (k, relative_error) = tan_half_degrees(fov_deg);
+        Self { step: R::rounded(k, relative_error) / R::exact(f64::from(steps_per_height)) }
+    }
+
+    /// Returns the ray through a place `(x, y)`, counted in steps from the middle of the image, right and up.
+    pub fn eye_ray(&self, x: i64, y: i64) -> Ray<R> {
+        // At most 65535 · 2 · 256 steps: exact.
+        let along = |steps: i64| R::exact(steps as f64) * self.step;
+        let zero = R::exact(0.0);
+        Ray {
+            origin: Vector::new(zero, zero, zero),
+            dir: Vector::new(along(x), along(y), R::exact(-1.0)),
+            leaving: None,
+        }
+    }
+}

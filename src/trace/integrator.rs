@@ -1,0 +1,100 @@
+//! The colour of an eye ray: from hit to hit along the mirror directions, and back.
+
+use crate::math::{Real, Vector};
+use crate::trace::judge::{Doubt, Judge};
+use crate::trace::ray::{Leaving, Ray};
+use crate::trace::scene::Scene;
+use crate::trace::shade::HitPoint;
+use crate::trace::{Part, Settings};
+
+/// Follows rays through one scene, in one arithmetic.
+#[derive(Debug)]
+pub struct Integrator<'a, 'p, R> {
+    pub(super) scene: &'a Scene<'p>,
+    pub(super) settings: &'a Settings,
+    /// Decides comparisons and counts.
+    pub judge: Judge,
+    /// The primitives that the kernels kept for the ray at hand.
+    pub(super) kept: Vec<u32>,
+    /// The hits of the ray so far, outermost first.
+    bounces: Vec<Bounce<R>>,
+}
+
+/// What a hit adds to the colour of its reflected ray, and how much of that it takes.
+#[derive(Clone, Copy, Debug)]
+struct Bounce<R> {
+    local: Vector<R>,
+    reflectance: f64,
+}
+
+/// What lies at the end of a ray.
+enum End<R> {
+    /// A colour, and nothing more to follow.
+    Color(Vector<R>),
+    /// A mirror: its bounce and the reflected ray.
+    Mirror(Bounce<R>, Ray<R>),
+}
+
+impl<'a, 'p, R: Real> Integrator<'a, 'p, R> {
+    /// Makes an integrator that has counted nothing yet.
+    pub fn new(scene: &'a Scene<'p>, settings: &'a Settings) -> Self {
+        Self { scene, settings, judge: Judge::default(), kept: Vec::new(), bounces: Vec::new() }
+    }
+
+    /// Returns the colour of an eye ray, each channel clamped to 0…1.
+    ///
+    /// # Errors
+    /// [`Doubt`] when a comparison at the first hit cannot be decided. Behind a mirror a doubt becomes a colour that may
+    /// be anything: whether it matters is seen when the channel is rounded.
+    pub fn color(&mut self, eye_ray: Ray<R>) -> Result<Vector<R>, Doubt> {
+        self.judge.counts.eye_rays += 1;
+        self.bounces.clear();
+        let mut ray = eye_ray;
+        let last = loop {
+            let level = self.bounces.len();
+            match self.follow(&ray, level as u32) {
+                Ok(End::Color(color)) => break color,
+                Ok(End::Mirror(bounce, reflected)) => {
+                    self.bounces.push(bounce);
+                    self.judge.counts.reflected_rays += 1;
+                    ray = reflected;
+                }
+                Err(doubt) if level == 0 => return Err(doubt),
+                Err(Doubt) => break Vector::exact(glam::DVec3::ZERO).map(|_: R| R::unit_interval()),
+            }
+        };
+        let through = |color: Vector<R>, bounce: &Bounce<R>| {
+            (bounce.local + color.scale(R::exact(bounce.reflectance))).map(R::clamp_unit)
+        };
+        Ok(self.bounces.iter().rev().fold(last.map(R::clamp_unit), through))
+    }
+
+    /// Follows one ray to the first surface it meets.
+    fn follow(&mut self, ray: &Ray<R>, level: u32) -> Result<End<R>, Doubt> {
+        let background = Vector::exact(self.scene.background);
+        if level > self.settings.max_level {
+            let black = Vector::exact(glam::DVec3::ZERO);
+            return Ok(End::Color(if self.meets_anything(ray)? { black } else { background }));
+        }
+        let Some(hit) = self.intersect(ray)? else {
+            return Ok(End::Color(background));
+        };
+        let at = HitPoint::new(self.scene, ray, &hit);
+        let local = self.shade(&at)?;
+        let reflectance = at.surface.reflectance;
+        if self.settings.part == Part::A || reflectance <= 0.0 {
+            return Ok(End::Color(local));
+        }
+        Ok(End::Mirror(Bounce { local, reflectance }, reflect(ray, &at)))
+    }
+}
+
+/// Returns the ray that leaves a hit along d − 2(n·d)n.
+fn reflect<R: Real>(ray: &Ray<R>, at: &HitPoint<'_, R>) -> Ray<R> {
+    let twice = at.normal.dot(ray.dir) * R::exact(2.0);
+    Ray {
+        origin: at.point,
+        dir: ray.dir - at.normal.scale(twice),
+        leaving: Some(Leaving { equation: at.equation, inward: at.from_inside }),
+    }
+}

@@ -1,0 +1,65 @@
+//! Who decides a comparison, and what happens when nobody can.
+
+use std::cmp::Ordering;
+
+use crate::math::{Real, Sign};
+use crate::trace::Counts;
+
+/// A comparison that lies within the error bounds: a finer arithmetic has to be asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Doubt;
+
+/// Decides comparisons and keeps the counts.
+#[derive(Debug, Default)]
+pub struct Judge {
+    /// What has been done so far.
+    pub counts: Counts,
+}
+
+impl Judge {
+    /// Compares a number with 0.
+    ///
+    /// What the finest arithmetic cannot decide is a tie and counts as equal. The semantics say what equality means at
+    /// every comparison: a tangent ray and a rim are met, a root at 0 and a light at the distance of a surface are not, of
+    /// hits at equal t the first declared is met.
+    ///
+    /// # Errors
+    /// [`Doubt`] when the bounds allow several answers and a finer arithmetic exists.
+    #[inline]
+    pub fn compare_zero<R: Real>(&mut self, number: R) -> Result<Ordering, Doubt> {
+        match number.sign() {
+            Sign::Negative => Ok(Ordering::Less),
+            Sign::Zero => Ok(Ordering::Equal),
+            Sign::Positive => Ok(Ordering::Greater),
+            Sign::Unknown if R::IS_FINEST => {
+                self.counts.ties += 1;
+                Ok(Ordering::Equal)
+            }
+            Sign::Unknown => Err(Doubt),
+        }
+    }
+
+    /// Tells whether a number is above 0; a tie is not.
+    ///
+    /// # Errors
+    /// As [`Judge::compare_zero`].
+    #[inline]
+    pub fn is_positive<R: Real>(&mut self, number: R) -> Result<bool, Doubt> {
+        Ok(self.compare_zero(number)?.is_gt())
+    }
+
+    /// Returns ⌊number⌋; at a tie that of the middle.
+    ///
+    /// # Errors
+    /// As [`Judge::compare_zero`].
+    pub fn floor<R: Real>(&mut self, number: R) -> Result<f64, Doubt> {
+        match number.floor() {
+            Some(floor) => Ok(floor),
+            None if R::IS_FINEST => {
+                self.counts.ties += 1;
+                Ok(number.value().floor())
+            }
+            None => Err(Doubt),
+        }
+    }
+}

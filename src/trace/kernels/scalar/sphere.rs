@@ -1,0 +1,28 @@
+//! Rejects spheres.
+
+use crate::trace::kernels::scalar::{Offsets, leads_away, line_misses};
+use crate::trace::kernels::{KernelRay, SphereLanes};
+
+/// Appends to `kept` the indices of the spheres that the ray may meet, in order.
+pub fn keep_spheres(ray: &KernelRay, spheres: &SphereLanes, kept: &mut Vec<u32>) {
+    let n_spheres = spheres.radius.len();
+    let (xs, ys, zs, radii) =
+        (&spheres.x[..n_spheres], &spheres.y[..n_spheres], &spheres.z[..n_spheres], &spheres.radius);
+    let [ox, oy, oz] = ray.origin;
+    let [dx, dy, dz] = ray.dir;
+    let dir = dx.abs() + dy.abs() + dz.abs();
+    let dir_squared = dx * dx + dy * dy + dz * dz;
+    for i in 0..n_spheres {
+        let (mx, my, mz) = (xs[i] - ox, ys[i] - oy, zs[i] - oz);
+        let offsets = Offsets::new(ray, mx.abs() + my.abs() + mz.abs(), dir);
+        let (cx, cy, cz) = (my * dz - mz * dy, mz * dx - mx * dz, mx * dy - my * dx);
+        let cross_sum = cx.abs() + cy.abs() + cz.abs();
+        let cross_squared = cx * cx + cy * cy + cz * cz;
+        if line_misses(ray, &offsets, cross_squared, cross_sum, dir_squared, dir, radii[i])
+            || leads_away(ray, &offsets, mx * dx + my * dy + mz * dz, mx * mx + my * my + mz * mz, radii[i])
+        {
+            continue;
+        }
+        kept.push(i as u32);
+    }
+}

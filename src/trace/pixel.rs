@@ -1,0 +1,85 @@
+//! One pixel: its samples, their mean, its three bytes.
+
+use crate::math::{Real, Vector};
+use crate::trace::camera::Camera;
+use crate::trace::integrator::Integrator;
+use crate::trace::judge::Doubt;
+use crate::trace::{SampleAt, Settings};
+
+/// Added before rounding down, so that a decimal such as 0.6 = 153/255 gives 153. The semantics fix it at 2⁻²⁰.
+const QUANTISATION_BIAS: f64 = 1.0 / 1_048_576.0;
+
+/// Where the samples of an image lie, in whole steps: N samples in a row or column of a pixel are 2 steps apart, so a
+/// pixel is 2N steps wide and all places are whole numbers.
+#[derive(Clone, Copy, Debug)]
+pub struct Sampling {
+    samples: u32,
+    width: u32,
+    height: u32,
+    /// Steps from a pixel's upper left corner to the point about which its samples lie.
+    anchor: i64,
+}
+
+/// The samples of one pixel, in steps from the middle of the image, right and up.
+#[derive(Clone, Copy, Debug)]
+pub struct Pixel {
+    left: i64,
+    top: i64,
+    samples: u32,
+}
+
+impl Sampling {
+    /// Lays out the samples that `settings` ask for.
+    pub fn new(settings: &Settings) -> Self {
+        assert!((1..=Settings::MAX_SAMPLES).contains(&settings.samples), "1 to 256 samples");
+        let anchor = match settings.sample_at {
+            SampleAt::Corner => 0,
+            SampleAt::Centre => i64::from(settings.samples),
+        };
+        Self { samples: settings.samples, width: settings.size.width(), height: settings.size.height(), anchor }
+    }
+
+    /// Returns the steps in half the height of the image.
+    pub fn steps_per_height(&self) -> u32 {
+        self.samples * self.height
+    }
+
+    /// Returns the samples of the pixel in this column and row.
+    ///
+    /// Sample k of N lies (k + ½)/N − ½ pixel from the anchor, which is 2k + 1 − N steps.
+    pub fn pixel(&self, column: u32, row: u32) -> Pixel {
+        let n = i64::from(self.samples);
+        let first = self.anchor + 1 - n;
+        Pixel {
+            left: (2 * i64::from(column) - i64::from(self.width)) * n + first,
+            top: (i64::from(self.height) - 2 * i64::from(row)) * n - first,
+            samples: self.samples,
+        }
+    }
+}
+
+/// Traces a pixel and returns its bytes, red, green, blue.
+///
+/// # Errors
+/// [`Doubt`] when this arithmetic cannot decide a comparison on the way, or a channel.
+pub fn settle<R: Real>(
+    integrator: &mut Integrator<'_, '_, R>,
+    camera: &Camera<R>,
+    pixel: &Pixel,
+) -> Result<[u8; 3], Doubt> {
+    let n = i64::from(pixel.samples);
+    let mut sum = Vector::exact(glam::DVec3::ZERO);
+    for row in 0..n {
+        for column in 0..n {
+            let ray = camera.eye_ray(pixel.left + 2 * column, pixel.top - 2 * row);
+            sum = sum + integrator.color(ray)?;
+        }
+    }
+    let mean = if n == 1 { sum } else { sum.map(|channel| channel / R::exact((n * n) as f64)) };
+    let mut bytes = [0; 3];
+    for (byte, channel) in bytes.iter_mut().zip(mean.to_array()) {
+        let scaled = channel * R::exact(255.0) + R::exact(QUANTISATION_BIAS);
+        *byte = integrator.judge.floor(scaled)? as u8;
+    }
+    Ok(bytes)
+}
