@@ -2,7 +2,7 @@
 
 use crate::diag::Diagnostic;
 use crate::ir::Program;
-use crate::lower::lower;
+use crate::lower::{Lowered, lower};
 use crate::source::Source;
 use crate::syntax::parse;
 
@@ -16,6 +16,15 @@ pub struct Compilation {
 }
 
 impl Compilation {
+    /// Puts together what the stages gave; for callers that run them one by one, say to time them.
+    #[must_use]
+    pub fn of_stages(parsed: Vec<Diagnostic>, lowered: Lowered) -> Self {
+        let mut diagnostics = parsed;
+        diagnostics.extend(lowered.diagnostics);
+        diagnostics.sort_by_key(|diagnostic| diagnostic.primary.span.start);
+        Self { program: lowered.program, diagnostics }
+    }
+
     /// Tells whether the scene cannot be rendered.
     #[must_use]
     pub fn has_errors(&self) -> bool {
@@ -28,8 +37,5 @@ impl Compilation {
 pub fn compile(source: &Source) -> Compilation {
     let parse = parse(source);
     let lowered = lower(source, &parse.file);
-    let mut diagnostics = parse.diagnostics;
-    diagnostics.extend(lowered.diagnostics);
-    diagnostics.sort_by_key(|diagnostic| diagnostic.primary.span.start);
-    Compilation { program: lowered.program, diagnostics }
+    Compilation::of_stages(parse.diagnostics, lowered)
 }

@@ -144,14 +144,16 @@ impl Write<'_> {
     fn run<S: Sink>(&self, view: SceneView<'_>, sink: &mut S) -> Result<WriteReport, ExecError> {
         let Options { settings, observer, .. } = self.options;
         let size = settings.size;
+        let start = observer.now();
         observer.event(&Event::Started { write_idx: self.write_idx, name: self.name, size });
         self.check_cancelled()?;
         let file = sink.create(&ImageRequest { name: self.name, size }).map_err(|error| self.sink_error(error))?;
         let mut report = WriteReport::new(self.write_idx, self.name, size);
         let file = self.stream(&Tracer::new(view, settings), file, &mut report)?;
-        let start = observer.now();
-        sink.commit(file).map_err(|error| self.sink_error(error))?;
-        report.save_time = observer.now().saturating_sub(start);
+        let (saved, save_time) = self.timed(|| sink.commit(file));
+        saved.map_err(|error| self.sink_error(error))?;
+        report.save_time = save_time;
+        report.total_time = observer.now().saturating_sub(start);
         observer.event(&Event::Finished(&report));
         Ok(report)
     }
@@ -211,10 +213,17 @@ impl Write<'_> {
 
 impl WriteReport {
     fn new(write_idx: usize, name: &str, size: Size) -> Self {
-        let counts = Counts::default();
-        let zero = Duration::ZERO;
-        let name = name.to_owned();
-        Self { write_idx, name, size, n_bytes: 0, counts, trace_time: zero, encode_time: zero, save_time: zero }
+        Self {
+            write_idx,
+            name: name.to_owned(),
+            size,
+            n_bytes: 0,
+            counts: Counts::default(),
+            trace_time: Duration::ZERO,
+            encode_time: Duration::ZERO,
+            save_time: Duration::ZERO,
+            total_time: Duration::ZERO,
+        }
     }
 
     fn add_band(&mut self, (counts, trace_time): (Counts, Duration), encode_time: Duration) {

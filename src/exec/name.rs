@@ -94,7 +94,7 @@ mod tests {
 
     #[test]
     fn a_name_stays_below_or_is_refused() {
-        for name in ["a.png", "a/b.png", "./a.png", "a//b.png", "..a.png", "a../b...png", "a:b.png", ".../a.png"] {
+        for name in ["a.png", "a/b.png", "./a.png", "a//b.png", "..a.png", "a../b...png", "ab:c.png", ".../a.png"] {
             assert_eq!(refuse_name(name), None, "{name}");
         }
         for name in ["/a.png", "//a/b.png", r"\a.png", r"\\server\share\a.png", r"C:\a.png", "c:/a.png", "C:a.png"] {

@@ -62,4 +62,6 @@ pub struct WriteReport {
     pub encode_time: Duration,
     /// Time spent making the file durable and giving it its name.
     pub save_time: Duration,
+    /// Time from beginning to end.
+    pub total_time: Duration,
 }

@@ -67,8 +67,8 @@ pub enum SinkError {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Step {
-    /// Finding the place that the name means.
-    Find,
+    /// Following the way to the place that the name means.
+    Reach,
     /// Making the folder of an image.
     MakeFolder,
     /// Making a file.
@@ -83,7 +83,7 @@ impl std::fmt::Display for SinkError {
             Self::Refused(refusal) => write!(f, "the name of the image {refusal}"),
             Self::Io { step, path, .. } => {
                 let verb = match step {
-                    Step::Find => "find",
+                    Step::Reach => "reach",
                     Step::MakeFolder => "make the folder",
                     Step::Create => "create",
                     Step::Save => "save",

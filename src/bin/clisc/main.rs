@@ -4,9 +4,12 @@
 
 mod args;
 mod commands;
+mod disk;
 mod input;
+mod interrupt;
 mod outcome;
 mod print;
+mod progress;
 
 use std::process::ExitCode;
 

@@ -2,8 +2,11 @@
 
 use std::process::ExitCode;
 
+use crate::interrupt;
+
 /// How a command ended. The order is that of gravity: of several scenes the worst counts.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Outcome {
     /// All went well.
     #[default]
@@ -22,7 +25,7 @@ impl From<Outcome> for ExitCode {
             Outcome::Fine => 0,
             Outcome::SceneErrors => 1,
             Outcome::Environment => 2,
-            Outcome::Interrupted => 130,
+            Outcome::Interrupted => interrupt::EXIT_CODE,
         })
     }
 }

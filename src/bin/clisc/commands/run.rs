@@ -1,10 +1,192 @@
 //! `clisc run`.
 
+mod reporter;
+mod stats;
+
+use std::collections::HashMap;
+use std::io::Write;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::time::Instant;
 
-use crate::args::RunArgs;
+use anyhow::Context;
+use clisc::Compilation;
+use clisc::diag::Diagnostic;
+use clisc::diag::render::{Color, render_human};
+use clisc::exec::{CancellationToken, ExecError, Options, check_names, execute};
+use clisc::ir::{self, Command, Valid};
+use clisc::lower::lower;
+use clisc::source::Source;
+use clisc::syntax::parse;
+use clisc::trace::Settings;
 
-/// Renders scenes.
-pub fn run(_args: &RunArgs) -> anyhow::Result<ExitCode> {
-    anyhow::bail!("`clisc run` is being built")
+use self::reporter::Reporter;
+use self::stats::{SceneStats, StatsReport};
+use crate::args::{RunArgs, StatsFormat};
+use crate::disk::{self, DiskSink};
+use crate::outcome::Outcome;
+use crate::{input, interrupt, print};
+
+/// Renders scenes and saves their images. A fault in one scene does not keep the others from being rendered.
+pub fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(args.threads)
+        .build()
+        .with_context(|| format!("cannot start {} threads", args.threads))?;
+    let mut session = Session {
+        args,
+        settings: args.settings(),
+        cancellation: interrupt::token()?,
+        sink: DiskSink::new(&args.out_dir),
+        writers: HashMap::new(),
+    };
+    let mut report = StatsReport::new(pool.current_num_threads());
+    for (scene_idx, path) in args.scenes.iter().enumerate() {
+        let stats = pool.install(|| session.run_scene(scene_idx, path))?;
+        if args.stats == Some(StatsFormat::Table) {
+            print::to_stdout(&stats.table())?;
+        }
+        let interrupted = stats.outcome == Outcome::Interrupted;
+        report.scenes.push(stats);
+        if interrupted {
+            break;
+        }
+    }
+    if args.stats == Some(StatsFormat::Json) {
+        print::to_stdout(&report.json()?)?;
+    }
+    Ok(report.outcome().into())
+}
+
+/// What the scenes of one call share.
+struct Session<'a> {
+    args: &'a RunArgs,
+    settings: Settings,
+    cancellation: CancellationToken,
+    sink: DiskSink,
+    /// For each file which scene writes it: its place among the arguments.
+    writers: HashMap<PathBuf, usize>,
+}
+
+impl Session<'_> {
+    /// Takes one scene all the way; what is wrong with it or with its files is printed and told by the outcome.
+    ///
+    /// # Errors
+    /// When results cannot be printed.
+    fn run_scene(&mut self, scene_idx: usize, path: &Path) -> anyhow::Result<SceneStats> {
+        let mut stats = SceneStats::new(path);
+        let source = match input::read(path) {
+            Ok(source) => source,
+            Err(error) => {
+                print::to_stderr(&format!("error: {error:#}\n"));
+                stats.outcome = Outcome::Environment;
+                return Ok(stats);
+            }
+        };
+        let Some(program) = self.compile(&source, &mut stats)? else { return Ok(stats) };
+        self.warn_of_shared_files(scene_idx, &program);
+        let reporter = Reporter::new(self.args);
+        let ended = self.execute(&program, &reporter);
+        stats.add_writes(&self.args.out_dir, &reporter.finish()?);
+        stats.outcome = match ended {
+            Ok(()) => Outcome::Fine,
+            Err(error) => self.tell(&source, error)?,
+        };
+        Ok(stats)
+    }
+
+    /// Compiles a scene and prints what was found; `None` when it has errors.
+    fn compile(&self, source: &Source, stats: &mut SceneStats) -> anyhow::Result<Option<Valid>> {
+        let start = Instant::now();
+        let parsed = parse(source);
+        stats.parse = start.elapsed();
+        let start = Instant::now();
+        let lowered = lower(source, &parsed.file);
+        let Compilation { program, diagnostics } = Compilation::of_stages(parsed.diagnostics, lowered);
+        stats.lower = start.elapsed();
+        self.print_diagnostics(source, &diagnostics)?;
+        let n_errors = diagnostics.iter().filter(|diagnostic| diagnostic.is_error()).count();
+        if n_errors > 0 {
+            let plural = if n_errors == 1 { "" } else { "s" };
+            print::to_stderr(&format!("`{}` has {n_errors} error{plural} and is not rendered\n", source.name()));
+            stats.outcome = Outcome::SceneErrors;
+            return Ok(None);
+        }
+        let start = Instant::now();
+        let valid = ir::validate(program);
+        stats.lower += start.elapsed();
+        // The checks of the language leave nothing to find here.
+        valid.map(Some).map_err(|violations| anyhow::anyhow!("a bug in clisc let pass: {}", violations[0]))
+    }
+
+    fn execute(&mut self, program: &Valid, reporter: &Reporter<'_>) -> Result<(), ExecError> {
+        if self.args.dry_run {
+            return self.dry_run(program, reporter);
+        }
+        let options = Options { settings: &self.settings, observer: reporter, cancellation: &self.cancellation };
+        interrupt::while_rendering(|| execute(program, options, &mut self.sink)).map(drop)
+    }
+
+    /// Looks at the names and says what would be written.
+    fn dry_run(&mut self, program: &Valid, reporter: &Reporter<'_>) -> Result<(), ExecError> {
+        let refused = check_names(program, &mut self.sink)?;
+        if !refused.is_empty() {
+            return Err(ExecError::Refused(refused));
+        }
+        for name in names(program) {
+            let (path, size) = (disk::shown(&self.args.out_dir, name), self.settings.size);
+            reporter.print(&format!("would write {} ({}x{})\n", path.display(), size.width(), size.height()));
+        }
+        Ok(())
+    }
+
+    /// Says why a scene was not rendered to its end.
+    fn tell(&self, scene: &Source, error: ExecError) -> anyhow::Result<Outcome> {
+        let error = match error {
+            ExecError::Refused(diagnostics) => {
+                self.print_diagnostics(scene, &diagnostics)?;
+                return Ok(Outcome::SceneErrors);
+            }
+            ExecError::Cancelled => {
+                print::to_stderr(&format!("interrupted while rendering `{}`\n", scene.name()));
+                return Ok(Outcome::Interrupted);
+            }
+            ExecError::Write { name, source } => {
+                let path = disk::shown(&self.args.out_dir, &name);
+                anyhow::Error::from(source).context(format!("cannot write `{}`", path.display()))
+            }
+            error => error.into(),
+        };
+        print::to_stderr(&format!("error: {error:#}\n"));
+        Ok(Outcome::Environment)
+    }
+
+    fn print_diagnostics(&self, source: &Source, diagnostics: &[Diagnostic]) -> anyhow::Result<()> {
+        let color = if print::stderr_has_color() { Color::Always } else { Color::Never };
+        let shown: Vec<_> = diagnostics.iter().filter(|d| d.is_error() || !self.args.quiet).cloned().collect();
+        let mut stderr = print::stderr();
+        render_human(source, &shown, color, &mut stderr)?;
+        Ok(stderr.flush()?)
+    }
+
+    /// Warns when another scene of this call writes a file that this one writes too.
+    fn warn_of_shared_files(&mut self, scene_idx: usize, program: &Valid) {
+        for name in names(program) {
+            let Ok(target) = self.sink.find(name) else { continue };
+            let other = self.writers.insert(target, scene_idx).filter(|other| *other != scene_idx);
+            if let Some(other) = other.filter(|_| !self.args.quiet) {
+                let [first, second] = [other, scene_idx].map(|idx| self.args.scenes[idx].display());
+                let path = disk::shown(&self.args.out_dir, name);
+                print::to_stderr(&format!("warning: `{first}` and `{second}` both write `{}`\n", path.display()));
+            }
+        }
+    }
+}
+
+/// Returns the file names of a program, in order.
+fn names(program: &Valid) -> impl Iterator<Item = &str> {
+    program.commands.iter().filter_map(|command| match command {
+        Command::Write(name) => Some(&**name),
+        _ => None,
+    })
 }

@@ -1,0 +1,153 @@
+//! `clisc run --stats`: times and counts of each scene.
+
+use std::fmt::Write;
+use std::path::Path;
+use std::time::Duration;
+
+use clisc::exec::WriteReport;
+use clisc::trace::Counts;
+use serde::{Serialize, Serializer};
+
+use crate::disk;
+use crate::outcome::Outcome;
+
+/// The version of the JSON document: a field may be added, none changes its meaning without a new version.
+const VERSION: u32 = 1;
+
+/// The whole document of `--stats=json`.
+#[derive(Debug, Serialize)]
+pub struct StatsReport {
+    version: u32,
+    threads: usize,
+    /// One for each scene, in the order of the command line.
+    pub scenes: Vec<SceneStats>,
+}
+
+/// What one scene took; the sums of its images.
+#[derive(Debug, Serialize)]
+pub struct SceneStats {
+    scene: String,
+    /// How it ended.
+    pub outcome: Outcome,
+    /// Text to tree.
+    #[serde(rename = "parse_seconds", serialize_with = "seconds")]
+    pub parse: Duration,
+    /// Tree to valid program.
+    #[serde(rename = "lower_seconds", serialize_with = "seconds")]
+    pub lower: Duration,
+    #[serde(rename = "trace_seconds", serialize_with = "seconds")]
+    trace: Duration,
+    #[serde(rename = "encode_seconds", serialize_with = "seconds")]
+    encode: Duration,
+    #[serde(rename = "save_seconds", serialize_with = "seconds")]
+    save: Duration,
+    #[serde(flatten)]
+    counts: Counts,
+    images: Vec<ImageStats>,
+}
+
+/// What one image took.
+#[derive(Debug, Serialize)]
+struct ImageStats {
+    path: String,
+    width: u32,
+    height: u32,
+    bytes: u64,
+    #[serde(rename = "trace_seconds", serialize_with = "seconds")]
+    trace: Duration,
+    #[serde(rename = "encode_seconds", serialize_with = "seconds")]
+    encode: Duration,
+    #[serde(rename = "save_seconds", serialize_with = "seconds")]
+    save: Duration,
+    #[serde(rename = "total_seconds", serialize_with = "seconds")]
+    total: Duration,
+    #[serde(flatten)]
+    counts: Counts,
+}
+
+fn seconds<S: Serializer>(time: &Duration, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_f64(time.as_secs_f64())
+}
+
+impl StatsReport {
+    /// Makes the report of a call that renders with `n_threads`.
+    pub fn new(n_threads: usize) -> Self {
+        Self { version: VERSION, threads: n_threads, scenes: Vec::new() }
+    }
+
+    /// Returns the worst outcome.
+    pub fn outcome(&self) -> Outcome {
+        self.scenes.iter().map(|scene| scene.outcome).max().unwrap_or_default()
+    }
+
+    /// Returns the document.
+    pub fn json(&self) -> anyhow::Result<String> {
+        Ok(serde_json::to_string_pretty(self)? + "\n")
+    }
+}
+
+impl SceneStats {
+    /// Makes the stats of a scene of which nothing is done yet.
+    pub fn new(path: &Path) -> Self {
+        Self {
+            scene: path.display().to_string(),
+            outcome: Outcome::Fine,
+            parse: Duration::ZERO,
+            lower: Duration::ZERO,
+            trace: Duration::ZERO,
+            encode: Duration::ZERO,
+            save: Duration::ZERO,
+            counts: Counts::default(),
+            images: Vec::new(),
+        }
+    }
+
+    /// Adds what the images took.
+    pub fn add_writes(&mut self, out_dir: &Path, reports: &[WriteReport]) {
+        for report in reports {
+            self.trace += report.trace_time;
+            self.encode += report.encode_time;
+            self.save += report.save_time;
+            self.counts += report.counts;
+            self.images.push(ImageStats {
+                path: disk::shown(out_dir, &report.name).display().to_string(),
+                width: report.size.width(),
+                height: report.size.height(),
+                bytes: report.n_bytes,
+                trace: report.trace_time,
+                encode: report.encode_time,
+                save: report.save_time,
+                total: report.total_time,
+                counts: report.counts,
+            });
+        }
+    }
+
+    /// Returns the table that `--stats` prints.
+    pub fn table(&self) -> String {
+        let mut table = format!("{}\n", self.scene);
+        let times = [
+            ("parse", self.parse),
+            ("lower", self.lower),
+            ("trace", self.trace),
+            ("encode", self.encode),
+            ("save", self.save),
+        ];
+        for (what, time) in times {
+            let _ = writeln!(table, "  {what:<15} {:>14.6} s", time.as_secs_f64());
+        }
+        let Counts { eye_rays, reflected_rays, shadow_rays, tests, refined_pixels, ties } = self.counts;
+        let counts = [
+            ("eye rays", eye_rays),
+            ("reflected rays", reflected_rays),
+            ("shadow rays", shadow_rays),
+            ("tests", tests),
+            ("refined pixels", refined_pixels),
+            ("ties", ties),
+        ];
+        for (what, count) in counts {
+            let _ = writeln!(table, "  {what:<15} {count:>14}");
+        }
+        table
+    }
+}
