@@ -1,6 +1,6 @@
 //! A file that nobody sees until it is whole.
 
-use std::fs::{File, Permissions};
+use std::fs::File;
 use std::io::{self, Write};
 use std::path::Path;
 
@@ -26,12 +26,10 @@ impl PendingFile {
         Self::create_named_in(folder)
     }
 
+    /// Makes a temporary file with the rights of any new file; tempfile's own are for secrets.
     fn create_named_in(folder: &Path) -> io::Result<Self> {
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(".clisc-").suffix(".tmp");
-        #[cfg(unix)]
-        builder.permissions(<Permissions as std::os::unix::fs::PermissionsExt>::from_mode(0o666));
-        builder.tempfile_in(folder).map(Self::Named).map_err(without_path)
+        let create = |path: &Path| File::options().write(true).create_new(true).open(path);
+        tempfile::Builder::new().prefix(".clisc-").suffix(".tmp").make_in(folder, create).map(Self::Named)
     }
 
     /// Makes the file durable and gives it its name, in one step for whoever looks; a file of that name is replaced.
@@ -64,13 +62,6 @@ impl Write for PendingFile {
     fn flush(&mut self) -> io::Result<()> {
         self.file().flush()
     }
-}
-
-/// Drops the path of the temporary file from an error: nobody knows that file.
-fn without_path(error: io::Error) -> io::Error {
-    let cause =
-        error.get_ref().and_then(|wrapped| wrapped.source()).and_then(|cause| cause.downcast_ref::<io::Error>());
-    cause.and_then(io::Error::raw_os_error).map_or(error, io::Error::from_raw_os_error)
 }
 
 #[cfg(target_os = "linux")]
