@@ -24,7 +24,6 @@ use std::time::Duration;
 use crate::diag::Diagnostic;
 use crate::image::PngStream;
 use crate::ir::{Command, Registers, SceneView, Valid};
-use crate::source::Span;
 use crate::trace::{Counts, Settings, Size, Tracer};
 
 /// The most bytes of pixels in one band; two bands are in memory at a time.
@@ -99,7 +98,7 @@ pub fn execute<S: Sink>(program: &Valid, options: Options<'_>, sink: &mut S) -> 
         registers.step(command);
         if let Command::Write(name) = command {
             let view = SceneView::new(program, registers);
-            let write = Write { write_idx: reports.len(), name, span: name_span(program, idx), options };
+            let write = Write { program, command_idx: idx, write_idx: reports.len(), name, options };
             reports.push(write.run(view, sink)?);
         }
     }
@@ -120,23 +119,19 @@ pub fn check_names<S: Sink>(program: &Valid, sink: &mut S) -> Result<Vec<Diagnos
         };
         match checked {
             Ok(()) => {}
-            Err(SinkError::Refused(refusal)) => refused.push(refusal.diagnostic(name, name_span(program, idx))),
+            Err(SinkError::Refused(refusal)) => refused.push(refusal.diagnostic(program, idx)),
             Err(error) => return Err(ExecError::Sink(error)),
         }
     }
     Ok(refused)
 }
 
-/// Returns the place of a file name; the start of the source for a program that was not made from text.
-fn name_span(program: &Valid, command_idx: usize) -> Span {
-    program.origins.commands.get(command_idx).copied().unwrap_or(Span::at(0))
-}
-
 /// One `write` on its way.
 struct Write<'a> {
+    program: &'a Valid,
+    command_idx: usize,
     write_idx: usize,
     name: &'a str,
-    span: Span,
     options: Options<'a>,
 }
 
@@ -201,7 +196,7 @@ impl Write<'_> {
 
     fn sink_error(&self, error: SinkError) -> ExecError {
         match error {
-            SinkError::Refused(refusal) => ExecError::Refused(vec![refusal.diagnostic(self.name, self.span)]),
+            SinkError::Refused(refusal) => ExecError::Refused(vec![refusal.diagnostic(self.program, self.command_idx)]),
             error => ExecError::Sink(error),
         }
     }

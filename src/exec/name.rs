@@ -6,7 +6,7 @@
 use std::path::PathBuf;
 
 use crate::diag::{Diagnostic, codes};
-use crate::source::Span;
+use crate::ir::{Command, Program};
 
 /// Why a scene may not write to a name.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -34,9 +34,13 @@ impl std::fmt::Display for Refusal {
 }
 
 impl Refusal {
-    /// Says at the name in the source why it is refused.
+    /// Says at the name in the source why that `write` is refused.
+    ///
+    /// # Panics
+    /// When the command is no `write`.
     #[must_use]
-    pub fn diagnostic(&self, name: &str, span: Span) -> Diagnostic {
+    pub fn diagnostic(&self, program: &Program, command_idx: usize) -> Diagnostic {
+        let Command::Write(name) = &program.commands[command_idx] else { panic!("only a `write` has a name") };
         const STAY_BELOW: &str = "name a file in the output folder or below it";
         let (code, label, help) = match self {
             Self::Absolute => {
@@ -52,7 +56,7 @@ impl Refusal {
                 "remove the link, or choose the folder it leads to with `--out-dir`".to_owned(),
             ),
         };
-        Diagnostic::new(code, span, format!("the file name `{name}` {self}"))
+        Diagnostic::new(code, program.origins.command(command_idx), format!("the file name `{name}` {self}"))
             .label(label)
             .help(help)
             .note("a scene writes only below the folder of `--out-dir`")
@@ -107,10 +111,13 @@ mod tests {
 
     #[test]
     fn an_absolute_name_is_offered_without_its_root() {
+        let help = |name: &str| {
+            let program = Program { commands: vec![Command::Write(name.into())], ..Program::default() };
+            Refusal::Absolute.diagnostic(&program, 0).help.unwrap()
+        };
         for (name, below) in [("/tmp/a.png", "tmp/a.png"), (r"C:\x\a.png", r"x\a.png"), (r"\\s\a.png", r"s\a.png")] {
-            let diagnostic = Refusal::Absolute.diagnostic(name, Span::new(3, 9));
-            assert_eq!(diagnostic.help, Some(format!("write `{below}`")));
-            assert_eq!((diagnostic.code.id, diagnostic.primary.span), ("E0501", Span::new(3, 9)));
+            assert_eq!(help(name), format!("write `{below}`"));
         }
+        assert_eq!(help("/../a.png"), "name a file in the output folder or below it");
     }
 }

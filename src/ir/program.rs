@@ -42,6 +42,14 @@ pub struct Origins {
     pub cylinders: Vec<Span>,
 }
 
+impl Origins {
+    /// Returns the place of a command; the start of the source for a program that was not made from text.
+    #[must_use]
+    pub fn command(&self, command_idx: usize) -> Span {
+        self.commands.get(command_idx).copied().unwrap_or(Span::at(0))
+    }
+}
+
 /// A lowered scene. Nothing edits it once it is made.
 #[derive(Clone, Debug, Default)]
 pub struct Program {
