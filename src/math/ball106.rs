@@ -29,6 +29,12 @@ impl Ball106 {
         self.value.hi() == 0.0 && self.error == 0.0
     }
 
+    /// Returns the middle of the bounds.
+    #[must_use]
+    pub fn middle(self) -> DoubleDouble {
+        self.value
+    }
+
     /// Returns the magnitude of the middle.
     fn magnitude(self) -> f64 {
         self.value.hi().abs()

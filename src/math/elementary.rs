@@ -15,6 +15,9 @@ const LN_2: DoubleDouble = DoubleDouble::from_parts(std::f64::consts::LN_2, 2.31
 /// A bound on the relative error of [`tan_half_degrees`].
 const TAN_ERROR: f64 = DoubleDouble::ROUNDOFF * 256.0;
 
+/// Angles below this, 2⁻⁶⁰⁰ degrees, are known to binary64 only.
+const SMALLEST_DEGREES: f64 = f64::from_bits((1023 - 600) << 52);
+
 /// A bound on the relative error of `exp`, and of the absolute error of `ln` relative to max(1, |ln x|).
 const EXP_LN_ERROR: f64 = DoubleDouble::ROUNDOFF * 4096.0;
 
@@ -28,7 +31,9 @@ pub fn tan_half_degrees(degrees: f64) -> (DoubleDouble, f64) {
     let turned = degrees > 90.0;
     let angle = if turned { DoubleDouble::sum(180.0, -degrees) } else { DoubleDouble::from(degrees) };
     let (sin, cos) = sin_cos(angle * PI / DoubleDouble::from(360.0));
-    (if turned { cos / sin } else { sin / cos }, TAN_ERROR)
+    // The trailing part of a tiny angle underflows.
+    let relative_error = if degrees < SMALLEST_DEGREES { 4.0 * f64::EPSILON } else { TAN_ERROR };
+    (if turned { cos / sin } else { sin / cos }, relative_error)
 }
 
 /// Returns sine and cosine of an angle in 0…π/4 by their Taylor series.

@@ -19,3 +19,6 @@ pub use double_double::DoubleDouble;
 pub use elementary::tan_half_degrees;
 pub use real::{Real, Sign};
 pub use vector::Vector;
+
+#[cfg(test)]
+mod tests;

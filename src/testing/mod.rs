@@ -1,1 +1,5 @@
-//! (being built)
+//! What tests, benches and fuzz targets share.
+
+mod stream;
+
+pub use stream::Stream;
