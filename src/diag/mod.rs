@@ -8,6 +8,7 @@
 pub mod codes;
 mod diagnostic;
 pub mod render;
+pub mod words;
 
 pub use codes::{Code, Severity};
 pub use diagnostic::{Diagnostic, Label};

@@ -1,14 +1,25 @@
 //! Lowering: `ast::File` in, `ir::Program` out.
 //!
 //! Scene commands are a small state machine (current surface, field of view, background). This module runs that machine
-//! once, so nothing later needs to know it existed.
+//! once, so nothing later needs to know it existed. A bad command has been reported by the parser: here it counts as the
+//! command that it was meant to be, so that one mistake is not reported twice.
 //!
 //! Never here: reading files, tracing rays, judging style.
 
+mod lights;
+mod objects;
+mod settings;
+mod values;
+mod writes;
+
 use crate::diag::Diagnostic;
-use crate::ir::Program;
-use crate::source::Source;
-use crate::syntax::ast;
+use crate::ir::{Command, Program};
+use crate::lower::lights::Lights;
+use crate::lower::objects::Objects;
+use crate::lower::writes::Writes;
+use crate::source::{Source, Span};
+use crate::syntax::ast::{self, Shape};
+use crate::syntax::spec::CommandKind;
 
 /// A program and what was found wrong on the way to it.
 #[derive(Debug, Default)]
@@ -22,6 +33,85 @@ pub struct Lowered {
 /// Lowers the tree of `source`.
 #[must_use]
 pub fn lower(source: &Source, file: &ast::File) -> Lowered {
-    let _ = (source, file);
-    Lowered::default()
+    let mut lowering = Lowering::new(source);
+    lowering.reserve(file);
+    for command in file.commands() {
+        lowering.step(&command);
+    }
+    lowering.finish()
+}
+
+/// The state of the machine between two commands.
+struct Lowering<'s> {
+    source: &'s Source,
+    program: Program,
+    diagnostics: Vec<Diagnostic>,
+    lights: Lights,
+    objects: Objects,
+    writes: Writes<'s>,
+}
+
+impl<'s> Lowering<'s> {
+    fn new(source: &'s Source) -> Self {
+        Self {
+            source,
+            program: Program::default(),
+            diagnostics: Vec::new(),
+            lights: Lights::default(),
+            objects: Objects::default(),
+            writes: Writes::default(),
+        }
+    }
+
+    /// Makes just enough room for the whole scene.
+    fn reserve(&mut self, file: &ast::File) {
+        let counts = file.counts();
+        let n = |kind| counts[kind as usize];
+        let program = &mut self.program;
+        program.lights.reserve(n(CommandKind::Light));
+        program.surfaces.reserve(n(CommandKind::Surface));
+        program.spheres.reserve(n(CommandKind::Sphere));
+        program.cylinders.reserve(n(CommandKind::Cylinder));
+        let origins = &mut program.origins;
+        origins.lights.reserve(n(CommandKind::Light));
+        origins.surfaces.reserve(n(CommandKind::Surface));
+        origins.spheres.reserve(n(CommandKind::Sphere));
+        origins.cylinders.reserve(n(CommandKind::Cylinder));
+    }
+
+    /// Carries out one command.
+    fn step(&mut self, command: &ast::Command<'_>) {
+        let (kind, is_whole) = match command.shape {
+            Shape::Whole(kind) => (Some(kind), true),
+            Shape::Bad(kind) => (kind, false),
+        };
+        self.writes.see(kind, command.span);
+        let is_sound =
+            is_whole && kind.is_some_and(|kind| values::check(self.source, kind, command, &mut self.diagnostics));
+        match kind {
+            Some(CommandKind::Fov) => settings::lower_fov(self, command, is_sound),
+            Some(CommandKind::Background) => settings::lower_background(self, command, is_sound),
+            Some(CommandKind::Light) => lights::lower_light(self, command, is_sound),
+            Some(CommandKind::Surface) => settings::lower_surface(self, command, is_sound),
+            Some(CommandKind::Sphere) => objects::lower_sphere(self, command, is_sound),
+            Some(CommandKind::Cylinder) => objects::lower_cylinder(self, command, is_sound),
+            Some(CommandKind::Write) => writes::lower_write(self, command, is_sound),
+            None => {}
+        }
+    }
+
+    /// Adds a step of the executor.
+    fn emit(&mut self, command: Command, origin: Span) {
+        self.program.commands.push(command);
+        self.program.origins.commands.push(origin);
+    }
+
+    /// Reports what only the whole scene shows.
+    fn finish(mut self) -> Lowered {
+        lights::check(&self.lights, &mut self.diagnostics);
+        objects::check(&self.objects, &mut self.diagnostics);
+        writes::check(&self.writes, &mut self.diagnostics);
+        self.diagnostics.sort_by_key(|diagnostic| diagnostic.primary.span.start);
+        Lowered { program: self.program, diagnostics: self.diagnostics }
+    }
 }

@@ -5,7 +5,10 @@
 //! [`argument_spans`](crate::syntax::argument_spans), which reads the line again.
 
 use crate::source::Span;
-use crate::syntax::spec::CommandKind;
+use crate::syntax::spec::{COMMANDS, CommandKind};
+
+/// How many kinds of command there are.
+const N_KINDS: usize = COMMANDS.len();
 
 /// What became of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,17 +47,17 @@ pub(super) struct Part {
 }
 
 impl Part {
-    /// Makes an empty part with room for the commands of `n_bytes` of text.
-    pub(super) fn with_room_for(n_bytes: usize) -> Self {
-        let _ = n_bytes;
-        Self::default()
+    /// Adds a command.
+    pub(super) fn push(&mut self, span: Span, shape: Shape, numbers: &[f64]) {
+        let first_number = self.numbers.len() as u32;
+        self.numbers.extend_from_slice(numbers);
+        self.nodes.push(Node { span, first_number, shape });
     }
 
-    /// Adds a command.
-    pub(super) fn push(&mut self, span: Span, shape: Shape, numbers: impl Iterator<Item = f64>) {
-        let first_number = self.numbers.len() as u32;
-        self.numbers.extend(numbers);
-        self.nodes.push(Node { span, first_number, shape });
+    /// Gives back the room that growing took in advance.
+    pub(super) fn shrink_to_fit(&mut self) {
+        self.nodes.shrink_to_fit();
+        self.numbers.shrink_to_fit();
     }
 
     fn get(&self, node: &Node) -> Command<'_> {
@@ -90,11 +93,16 @@ impl File {
         self.parts.iter().map(|part| part.nodes.len()).sum()
     }
 
-    /// Returns the number of whole commands of one kind.
+    /// Returns the number of whole commands of each kind, in the order of [`CommandKind`].
     #[must_use]
-    pub fn count(&self, kind: CommandKind) -> usize {
-        let of_kind = |node: &&Node| node.shape == Shape::Whole(kind);
-        self.parts.iter().map(|part| part.nodes.iter().filter(of_kind).count()).sum()
+    pub fn counts(&self) -> [usize; N_KINDS] {
+        let mut counts = [0; N_KINDS];
+        for node in self.parts.iter().flat_map(|part| &part.nodes) {
+            if let Shape::Whole(kind) = node.shape {
+                counts[kind as usize] += 1;
+            }
+        }
+        counts
     }
 }
 

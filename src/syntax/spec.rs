@@ -108,7 +108,7 @@ pub enum Arguments {
     /// This many numbers.
     Numbers(&'static [ArgSpec]),
     /// One file name.
-    FileName(ArgSpec),
+    FileName(&'static ArgSpec),
 }
 
 /// One command of the language.
@@ -120,6 +120,8 @@ pub struct CommandSpec {
     pub name: &'static str,
     /// What follows the name.
     pub arguments: Arguments,
+    /// Two numbers, by index, of which the first must be below the second.
+    pub rising: Option<(usize, usize)>,
     /// What it does, a sentence.
     pub doc: &'static str,
     /// A line of a scene that shows it.
@@ -136,14 +138,19 @@ impl CommandSpec {
         }
     }
 
+    /// Returns the names of the arguments.
+    pub fn arg_names(&self) -> impl Iterator<Item = &'static str> + use<> {
+        let args: &'static [ArgSpec] = match &self.arguments {
+            Arguments::Numbers(args) => args,
+            Arguments::FileName(arg) => std::slice::from_ref(*arg),
+        };
+        args.iter().map(|arg| arg.name)
+    }
+
     /// Returns the command as one writes it down: its name and those of its arguments.
     #[must_use]
     pub fn usage(&self) -> String {
-        let names = match &self.arguments {
-            Arguments::Numbers(args) => *args,
-            Arguments::FileName(arg) => std::slice::from_ref(arg),
-        };
-        names.iter().fold(self.name.to_owned(), |usage, arg| usage + " " + arg.name)
+        self.arg_names().fold(self.name.to_owned(), |usage, name| usage + " " + name)
     }
 }
 
@@ -191,6 +198,7 @@ pub static COMMANDS: [CommandSpec; 7] = [
             range: Range::PositiveBelow(180.0),
             doc: "from the lower to the upper edge of the image",
         }]),
+        rising: None,
         doc: "Sets the vertical field of view.",
         example: "fov 60",
     },
@@ -198,6 +206,7 @@ pub static COMMANDS: [CommandSpec; 7] = [
         kind: CommandKind::Background,
         name: "background",
         arguments: Arguments::Numbers(&[share("r", "red"), share("g", "green"), share("b", "blue")]),
+        rising: None,
         doc: "Sets the colour of a ray that meets nothing; black until set.",
         example: "background 0.2 0.3 0.5",
     },
@@ -212,6 +221,7 @@ pub static COMMANDS: [CommandSpec; 7] = [
             world("y", "up"),
             world("z", "towards the viewer"),
         ]),
+        rising: None,
         doc: "Adds a point light: its colour, then its position.",
         example: "light 1 1 1  0 0 5",
     },
@@ -231,6 +241,7 @@ pub static COMMANDS: [CommandSpec; 7] = [
             ArgSpec { name: "P", unit: Unit::Exponent, range: Range::NotNegative, doc: "the shininess" },
             share("Krefl", "the weight of the mirror image"),
         ]),
+        rising: None,
         doc: "Sets the surface of the objects that follow.",
         example: "surface 0.1 0 0  0.8 0.2 0.2  0.5 0.5 0.5  20  0.3",
     },
@@ -243,6 +254,7 @@ pub static COMMANDS: [CommandSpec; 7] = [
             world("z", "the centre, towards the viewer"),
             RADIUS,
         ]),
+        rising: None,
         doc: "Adds a sphere.",
         example: "sphere 0 0 -4  1",
     },
@@ -256,18 +268,20 @@ pub static COMMANDS: [CommandSpec; 7] = [
             world("ymin", "the height of the lower cap"),
             world("ymax", "the height of the upper cap, above ymin"),
         ]),
+        rising: Some((3, 4)),
         doc: "Adds a closed vertical cylinder.",
         example: "cylinder 0.5  0 -4  -1 1",
     },
     CommandSpec {
         kind: CommandKind::Write,
         name: "write",
-        arguments: Arguments::FileName(ArgSpec {
+        arguments: Arguments::FileName(&ArgSpec {
             name: "name.png",
             unit: Unit::FileName,
             range: Range::Any,
             doc: "the image, below the output folder",
         }),
+        rising: None,
         doc: "Renders the scene as it now stands and saves the image.",
         example: "write picture.png",
     },

@@ -1,0 +1,140 @@
+//! The values of arguments against the ranges of the command table.
+
+use crate::diag::words::{named, quoted};
+use crate::diag::{Code, Diagnostic, codes};
+use crate::source::{Source, Span};
+use crate::syntax::spec::{CommandKind, CommandSpec, Range};
+use crate::syntax::{argument_spans, ast};
+
+/// Checks the numbers of a whole command and appends what is wrong with them. Tells whether the scene may hold them.
+pub(super) fn check(source: &Source, kind: CommandKind, command: &ast::Command<'_>, acc: &mut Vec<Diagnostic>) -> bool {
+    let spec = kind.spec();
+    let as_expected = spec.numbers().iter().zip(command.numbers).all(|(arg, &number)| arg.range.expects(number));
+    if as_expected && find_unordered(spec, command.numbers).is_none() {
+        return true;
+    }
+    let slow = Values { source, spec, numbers: command.numbers, spans: argument_spans(source, command.span) };
+    let n_before = acc.len();
+    slow.check_ranges(acc);
+    slow.check_order(acc);
+    slow.check_unit_ranges(acc);
+    !acc[n_before..].iter().any(Diagnostic::is_error)
+}
+
+/// Returns the indices of two numbers of which the first must be below the second and is not.
+fn find_unordered(spec: &CommandSpec, numbers: &[f64]) -> Option<(usize, usize)> {
+    spec.rising.filter(|&(low, high)| numbers[low] >= numbers[high])
+}
+
+/// The numbers of a command of which some is not as expected.
+struct Values<'c> {
+    source: &'c Source,
+    spec: &'static CommandSpec,
+    numbers: &'c [f64],
+    spans: Vec<Span>,
+}
+
+impl Values<'_> {
+    fn text(&self, index: usize) -> &str {
+        self.source.slice(self.spans[index])
+    }
+
+    fn check_ranges(&self, acc: &mut Vec<Diagnostic>) {
+        for (index, (arg, &number)) in self.spec.numbers().iter().zip(self.numbers).enumerate() {
+            if !arg.range.allows(number) {
+                acc.push(match arg.range {
+                    Range::PositiveBelow(limit) => self.angle(index, limit),
+                    Range::NotNegative => self.exponent(index),
+                    Range::Positive | Range::Any | Range::UsuallyUnit => self.radius(index),
+                });
+            }
+        }
+    }
+
+    /// Makes a diagnostic at a number.
+    fn at(&self, code: &'static Code, index: usize, message: String) -> Diagnostic {
+        Diagnostic::new(code, self.spans[index], message)
+    }
+
+    fn angle(&self, index: usize, limit: f64) -> Diagnostic {
+        let message = format!("a field of view of {} degrees is out of range", self.text(index));
+        let help = if self.numbers[index] > 0.0 {
+            "a usual angle is `60`; a wide one is `120`"
+        } else {
+            "a usual angle is `60`"
+        };
+        self.at(&codes::FOV_OUT_OF_RANGE, index, message).label(format!("must be above 0 and below {limit}")).help(help)
+    }
+
+    fn exponent(&self, index: usize) -> Diagnostic {
+        let message = format!("the shininess `{}` is negative: {}", self.spec.numbers()[index].name, self.text(index));
+        self.at(&codes::NEGATIVE_SHININESS, index, message)
+            .label("must be 0 or above")
+            .help(format!("write {} if the sign is a slip", quoted(self.text(index).trim_start_matches('-'))))
+    }
+
+    fn radius(&self, index: usize) -> Diagnostic {
+        let (name, text) = (self.spec.name, self.text(index));
+        let mantissa = text.split(['e', 'E']).next().unwrap_or(text);
+        let is_rounded = mantissa.bytes().any(|byte| (b'1'..=b'9').contains(&byte));
+        let (message, help) = if self.numbers[index] < 0.0 {
+            let repair = quoted(text.trim_start_matches('-'));
+            (format!("the radius of a `{name}` is negative: {text}"), format!("write {repair} if the sign is a slip"))
+        } else if is_rounded {
+            let help = "the smallest radius is about 5e-324; scale the scene up";
+            (format!("the radius {text} of a `{name}` is so small that it is 0"), help.to_owned())
+        } else {
+            let help = "write a radius above 0, or remove the object";
+            (format!("the radius of a `{name}` is 0"), help.to_owned())
+        };
+        self.at(&codes::RADIUS_NOT_POSITIVE, index, message).label("must be above 0").help(help)
+    }
+
+    fn check_order(&self, acc: &mut Vec<Diagnostic>) {
+        let Some((low, high)) = find_unordered(self.spec, self.numbers) else { return };
+        let args = self.spec.numbers();
+        let (low_name, high_name) = (args[low].name, args[high].name);
+        let (low_text, high_text) = (self.text(low), self.text(high));
+        let span = self.spans[low].to(self.spans[high]);
+        let (message, help) = if self.numbers[low] > self.numbers[high] {
+            let message = format!("`{low_name}` {low_text} is above `{high_name}` {high_text}");
+            (message, format!("swap them: {}", quoted(&self.with_swapped(low, high))))
+        } else {
+            let message =
+                format!("`{low_name}` and `{high_name}` are both {low_text}: the `{}` has no height", self.spec.name);
+            (message, format!("write a `{high_name}` above {low_text}"))
+        };
+        let label = format!("`{low_name}` must be below `{high_name}`");
+        acc.push(Diagnostic::new(&codes::HEIGHTS_NOT_RISING, span, message).label(label).help(help));
+    }
+
+    /// Returns the command with two of its arguments swapped.
+    fn with_swapped(&self, a: usize, b: usize) -> String {
+        let mut texts: Vec<_> = (0..self.spans.len()).map(|index| self.text(index)).collect();
+        texts.swap(a, b);
+        format!("{} {}", self.spec.name, texts.join(" "))
+    }
+
+    /// Reports the colours and coefficients outside 0…1, all of a command at once.
+    fn check_unit_ranges(&self, acc: &mut Vec<Diagnostic>) {
+        let args = self.spec.numbers();
+        let is_outside = |&index: &usize| {
+            args[index].range.allows(self.numbers[index]) && !args[index].range.expects(self.numbers[index])
+        };
+        let outside: Vec<_> = (0..args.len()).filter(is_outside).collect();
+        let Some((&first, others)) = outside.split_first() else { return };
+        let names = named(outside.iter().map(|&index| args[index].name));
+        let message = match others {
+            [] => format!("{names} of `{}` is {}, outside 0 to 1", self.spec.name, self.text(first)),
+            _ => format!("{names} of `{}` are outside 0 to 1", self.spec.name),
+        };
+        let diagnostic = self
+            .at(&codes::OUTSIDE_UNIT_RANGE, first, message)
+            .label(format!("`{}`", args[first].name))
+            .note("colours and coefficients usually lie between 0 and 1; a pixel is cut off there");
+        let label = |diagnostic: Diagnostic, &index: &usize| {
+            diagnostic.secondary(self.spans[index], format!("`{}`", args[index].name))
+        };
+        acc.push(others.iter().fold(diagnostic, label));
+    }
+}

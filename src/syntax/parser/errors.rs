@@ -1,0 +1,181 @@
+//! The translation of what chumsky found into diagnostics. Nothing else knows chumsky's errors.
+
+use chumsky::error::Rich;
+
+use crate::diag::words::{counted, listed, named, ordinal, quoted};
+use crate::diag::{Diagnostic, codes};
+use crate::source::{Source, Span};
+use crate::syntax::parser::{grammar, numeral, path};
+use crate::syntax::spec::{ArgSpec, Arguments, CommandSpec};
+use crate::syntax::token::Token;
+
+/// A command whose arguments are wrong.
+pub(super) struct BadCommand<'l> {
+    /// The source it stands in.
+    pub(super) source: &'l Source,
+    /// What its name says it is.
+    pub(super) spec: &'static CommandSpec,
+    /// The place of its name.
+    pub(super) name: Span,
+    /// Its arguments, up to the end of the line or to the name of another command.
+    pub(super) args: &'l [Token],
+    /// The name of another command on the same line.
+    pub(super) next_name: Option<Span>,
+}
+
+/// One thing that is wrong, by the index of the argument.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Fault {
+    /// The argument at this index is none.
+    Malformed(usize),
+    /// The arguments from this index on are missing.
+    Missing(usize),
+    /// The arguments from this index on are too many.
+    Surplus(usize),
+}
+
+impl Fault {
+    /// Reads an error about the tokens of a command that takes `n_expected` arguments.
+    fn new(error: &Rich<'_, Token>, n_expected: usize) -> Self {
+        let index = error.span().start;
+        match error.found() {
+            None => Self::Missing(index),
+            Some(_) if index < n_expected => Self::Malformed(index),
+            Some(_) => Self::Surplus(index),
+        }
+    }
+}
+
+/// Appends what is wrong with the arguments of a command, one diagnostic for each mistake.
+pub(super) fn check_arguments(command: &BadCommand<'_>, acc: &mut Vec<Diagnostic>) {
+    if let Some(diagnostic) = numeral::find_commas(command) {
+        return acc.push(diagnostic);
+    }
+    let n_before = acc.len();
+    for fault in find_faults(command) {
+        acc.push(match fault {
+            Fault::Malformed(index) => malformed(command, index),
+            Fault::Missing(index) => missing(command, index),
+            Fault::Surplus(index) => surplus(command, index),
+        });
+    }
+    if acc.len() == n_before
+        && let Some(next_name) = command.next_name
+    {
+        acc.push(second_command(command, next_name));
+    }
+}
+
+/// Lists the faults. Where an argument is malformed the count proves nothing: `1,2,3` is three numbers in one.
+fn find_faults(command: &BadCommand<'_>) -> Vec<Fault> {
+    let n_expected = command.n_expected();
+    let errors = grammar::errors(&command.spec.arguments, command.args);
+    let mut faults: Vec<_> = errors.iter().map(|error| Fault::new(error, n_expected)).collect();
+    if faults.iter().any(|fault| matches!(fault, Fault::Malformed(_))) {
+        faults.retain(|fault| !matches!(fault, Fault::Missing(_)));
+    }
+    faults
+}
+
+impl BadCommand<'_> {
+    /// Returns the text of an argument.
+    pub(super) fn text(&self, arg: &Token) -> &str {
+        self.source.slice(arg.span)
+    }
+
+    /// Returns how many arguments the command takes.
+    pub(super) fn n_expected(&self) -> usize {
+        match self.spec.arguments {
+            Arguments::Numbers(args) => args.len(),
+            Arguments::FileName(_) => 1,
+        }
+    }
+
+    /// Returns "`sphere` takes 4 numbers, found 5".
+    fn count_message(&self) -> String {
+        let name = self.spec.name;
+        let n_found = self.args.len();
+        let found = if n_found == 0 { "none".to_owned() } else { n_found.to_string() };
+        match self.spec.arguments {
+            Arguments::Numbers(args) => format!("`{name}` takes {}, found {found}", counted(args.len(), "number")),
+            Arguments::FileName(_) => format!("`{name}` takes 1 file name, found {found}"),
+        }
+    }
+
+    /// Returns "needs x, y, z, radius".
+    fn needs(&self) -> String {
+        format!("needs {}", listed(self.spec.arg_names()))
+    }
+}
+
+fn malformed(command: &BadCommand<'_>, index: usize) -> Diagnostic {
+    let arg = &command.args[index];
+    match command.spec.arguments {
+        Arguments::Numbers(args) => numeral::diagnose(command.source, arg.span, command.spec, &args[index]),
+        Arguments::FileName(_) => path::unterminated_quote(command.source, arg.span),
+    }
+}
+
+fn missing(command: &BadCommand<'_>, index: usize) -> Diagnostic {
+    let Arguments::Numbers(args) = command.spec.arguments else {
+        return path::missing(command.source, command.name);
+    };
+    let missing = named(args[index..].iter().map(|arg| arg.name));
+    let place = match index {
+        0 => format!("behind `{}`", command.spec.name),
+        n => format!("after the {} number", ordinal(n)),
+    };
+    let mut diagnostic = Diagnostic::new(&codes::MISSING_ARGUMENT, command.name, command.count_message())
+        .label(command.needs())
+        .help(format!("add the missing {missing} {place}"));
+    if let [first, .., last] | [first @ last] = command.args {
+        let given = listed(args[..index].iter().map(|arg| arg.name));
+        diagnostic = diagnostic.secondary(first.span.to(last.span), format!("given: {given}"));
+    }
+    match command.next_name {
+        Some(next_name) => diagnostic.secondary(next_name, "another command begins here"),
+        None => diagnostic,
+    }
+}
+
+fn surplus(command: &BadCommand<'_>, index: usize) -> Diagnostic {
+    let surplus = &command.args[index..];
+    let span = surplus.iter().fold(surplus[0].span, |span, arg| span.to(arg.span));
+    let help = match command.spec.arguments {
+        Arguments::Numbers(_) => help_for_surplus(command, surplus),
+        Arguments::FileName(_) => path::help_for_surplus(command, span),
+    };
+    let label = if surplus.len() == 1 { "surplus" } else { "all of these are surplus" };
+    Diagnostic::new(&codes::SURPLUS_ARGUMENT, span, command.count_message())
+        .label(label)
+        .secondary(command.name, command.needs())
+        .help(help)
+}
+
+/// Says what to do about numbers that are too many.
+fn help_for_surplus(command: &BadCommand<'_>, surplus: &[Token]) -> String {
+    const COMMENT_MARKS: [&str; 6] = ["//", "/*", ";", "--", "%", "'"];
+    let first = command.text(&surplus[0]);
+    if COMMENT_MARKS.iter().any(|mark| first.starts_with(mark)) {
+        return "a comment begins with `#`".to_owned();
+    }
+    let last_name = command.spec.numbers().last().map_or("", |arg: &ArgSpec| arg.name);
+    match surplus {
+        [_] => format!("remove {}: `{last_name}` is the last", quoted(first)),
+        _ => format!("remove the {} numbers behind `{last_name}`", surplus.len()),
+    }
+}
+
+/// Reports a command that is whole and another that follows it on the same line.
+fn second_command(command: &BadCommand<'_>, next_name: Span) -> Diagnostic {
+    let next = command.source.slice(next_name);
+    Diagnostic::new(
+        &codes::SURPLUS_ARGUMENT,
+        next_name,
+        format!("a second command, `{next}`, on the line of `{}`", command.spec.name),
+    )
+    .label("begins a second command")
+    .secondary(command.name, command.needs())
+    .help(format!("begin a new line before `{next}`"))
+    .note("a line holds one command")
+}

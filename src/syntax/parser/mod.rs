@@ -1,0 +1,244 @@
+//! Lines in, tree out.
+//!
+//! A scene is parsed a line at a time: the first word picks an entry of the command table, and the [`grammar`] of its
+//! arguments says yes or no at full speed. A line that is refused is read a second time, by the same grammar with rich
+//! errors, to find out what to say about it. So damage cannot spread from line to line, and large scenes are cut into
+//! chunks of whole lines that are parsed side by side.
+
+mod errors;
+mod grammar;
+mod names;
+mod numeral;
+mod path;
+mod text;
+
+use rayon::prelude::*;
+
+use crate::diag::Diagnostic;
+use crate::source::{Source, Span};
+use crate::syntax::ast::{self, Shape};
+use crate::syntax::lexer::{Line, lex_line, lines};
+use crate::syntax::parser::errors::BadCommand;
+use crate::syntax::parser::text::LoneReturns;
+use crate::syntax::spec::{self, Arguments, CommandKind, CommandSpec, MAX_NUMBERS};
+use crate::syntax::token::{Token, TokenKind};
+
+/// How much text one thread takes at a time. The tree depends on the text alone, not on this.
+const CHUNK_BYTES: usize = 1 << 20;
+
+/// A tree and what was found wrong on the way to it.
+#[derive(Debug, Default, PartialEq)]
+pub struct Parse {
+    /// The tree; there always is one.
+    pub file: ast::File,
+    /// In the order of the text.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+/// Parses a scene. A line that is no command becomes a bad node and a diagnostic, and spoils no other line.
+#[must_use]
+pub fn parse(source: &Source) -> Parse {
+    parse_in_chunks(source, CHUNK_BYTES)
+}
+
+/// Does the work of [`parse`] in chunks of about `chunk_bytes`; the result is the same for any size.
+#[must_use]
+pub fn parse_in_chunks(source: &Source, chunk_bytes: usize) -> Parse {
+    if let Some(diagnostic) = text::check_encoding(source) {
+        return unreadable(source, diagnostic);
+    }
+    let chunks: Vec<_> = chunks(source.text(), chunk_bytes.max(1)).collect();
+    let chunks: Vec<_> = match chunks[..] {
+        [start] => vec![Chunk::parse(source, start)],
+        _ => chunks.into_par_iter().map(|span| Chunk::parse(source, span)).collect(),
+    };
+    let mut diagnostics = Vec::new();
+    let mut lone_returns = LoneReturns::default();
+    let mut parts = Vec::with_capacity(chunks.len());
+    for chunk in chunks {
+        diagnostics.extend(chunk.diagnostics);
+        lone_returns = lone_returns.and(chunk.lone_returns);
+        parts.push(chunk.part);
+    }
+    text::check_bytes(source, &mut diagnostics);
+    diagnostics.extend(lone_returns.diagnose());
+    diagnostics.sort_by_key(|diagnostic| diagnostic.primary.span.start);
+    Parse { file: ast::File::new(parts), diagnostics }
+}
+
+/// Returns the places of the arguments of the command below `command`.
+#[must_use]
+pub fn argument_spans(source: &Source, command: Span) -> Vec<Span> {
+    let mut spans = Vec::new();
+    lex_line(source.slice(command), command.start, |token| {
+        if token.kind.is_significant() {
+            spans.push(token.span);
+        }
+    });
+    spans.split_off(spans.len().min(1))
+}
+
+/// Returns the file name of the `write` below `command`, without quotes, and its place, quotes included.
+#[must_use]
+pub fn file_name(source: &Source, command: Span) -> Option<(&str, Span)> {
+    let span = *argument_spans(source, command).first()?;
+    Some((path::unquoted(source, span), span))
+}
+
+/// Makes the tree of a source of which no line can be read: as far as anyone knows it says all that is needed.
+fn unreadable(source: &Source, diagnostic: Diagnostic) -> Parse {
+    let mut part = ast::Part::default();
+    part.push(Span::new(0, source.text().len() as u32), Shape::Bad(Some(CommandKind::Write)), &[]);
+    Parse { file: ast::File::new(vec![part]), diagnostics: vec![diagnostic] }
+}
+
+/// Cuts `text` behind newlines into spans of at least `chunk_bytes`, the last excepted. There is always one.
+fn chunks(text: &str, chunk_bytes: usize) -> impl Iterator<Item = Span> {
+    let mut from = Some(0);
+    std::iter::from_fn(move || {
+        let start = from?;
+        let least = (start + chunk_bytes - 1).min(text.len());
+        let newline = memchr::memchr(b'\n', &text.as_bytes()[least..]);
+        let end = newline.map_or(text.len(), |newline| least + newline + 1);
+        from = (end < text.len()).then_some(end);
+        Some(Span::new(start as u32, end as u32))
+    })
+}
+
+/// A run of lines and what has been made of them.
+struct Chunk<'s> {
+    source: &'s Source,
+    part: ast::Part,
+    diagnostics: Vec<Diagnostic>,
+    lone_returns: LoneReturns,
+    /// The significant tokens of the line at hand; kept from line to line to save allocations.
+    tokens: Vec<Token>,
+    /// Its foreign tokens.
+    foreign: Vec<Token>,
+}
+
+impl<'s> Chunk<'s> {
+    fn parse(source: &'s Source, span: Span) -> Self {
+        let mut chunk = Self {
+            source,
+            part: ast::Part::default(),
+            diagnostics: Vec::new(),
+            lone_returns: LoneReturns::default(),
+            tokens: Vec::new(),
+            foreign: Vec::new(),
+        };
+        for line in lines(source.slice(span), span.start) {
+            chunk.parse_line(&line);
+        }
+        chunk.part.shrink_to_fit();
+        chunk
+    }
+
+    fn parse_line(&mut self, line: &Line<'s>) {
+        self.tokens.clear();
+        self.foreign.clear();
+        lex_line(line.text, line.start, |token| {
+            if token.kind.is_significant() {
+                self.tokens.push(token);
+            } else if token.kind.is_foreign() {
+                self.foreign.push(token);
+            }
+        });
+        if let Some(end) = line.end.filter(|end| end.kind == TokenKind::LoneReturn) {
+            self.lone_returns.push(end.span);
+        }
+        if !self.foreign.is_empty() || !self.parse_good_line() {
+            self.parse_bad_line();
+        }
+    }
+
+    /// Parses the line if nothing is wrong with it, and tells whether that is so.
+    fn parse_good_line(&mut self) -> bool {
+        let [name, args @ ..] = self.tokens.as_slice() else { return true };
+        let Some(spec) = spec::find(self.source.slice(name.span)) else { return false };
+        let Some(numbers) = read_arguments(self.source, spec, args) else { return false };
+        let span = args.last().map_or(name.span, |last| name.span.to(last.span));
+        self.part.push(span, Shape::Whole(spec.kind), &numbers[..spec.numbers().len()]);
+        true
+    }
+
+    /// Reports what is wrong with the line and makes the best of it.
+    fn parse_bad_line(&mut self) {
+        text::check_foreign(self.source, &self.foreign, &mut self.diagnostics);
+        let [name, args @ ..] = self.tokens.as_slice() else { return };
+        let span = args.last().map_or(name.span, |last| name.span.to(last.span));
+        let spec = spec::find(self.source.slice(name.span));
+        let has_control = self.foreign.iter().any(|token| token.kind == TokenKind::Control);
+        let intended = match spec {
+            // The rest of such a line is not worth a guess: its words are torn apart.
+            _ if has_control => spec.map(|spec| spec.kind),
+            Some(spec) => {
+                let n_before = self.diagnostics.len();
+                check_command(self.source, spec, name, args, &mut self.diagnostics);
+                if self.diagnostics.len() == n_before && self.parse_good_line() {
+                    return;
+                }
+                Some(spec.kind)
+            }
+            None => {
+                let (diagnostic, intended) = names::diagnose(self.source, name, args);
+                self.diagnostics.push(diagnostic);
+                intended
+            }
+        };
+        self.part.push(span, Shape::Bad(intended), &[]);
+    }
+}
+
+/// Returns the numbers among the arguments if all arguments are as they should be.
+fn read_arguments(source: &Source, spec: &CommandSpec, args: &[Token]) -> Option<[f64; MAX_NUMBERS]> {
+    if !grammar::accepts(&spec.arguments, args) {
+        return None;
+    }
+    let mut numbers = [0.0; MAX_NUMBERS];
+    match spec.arguments {
+        Arguments::Numbers(_) => {
+            for (number, arg) in numbers.iter_mut().zip(args) {
+                *number = source.slice(arg.span).parse().ok().filter(|number: &f64| number.is_finite())?;
+            }
+        }
+        Arguments::FileName(_) => {
+            args.first().filter(|name| path::is_png(path::unquoted(source, name.span)))?;
+        }
+    }
+    Some(numbers)
+}
+
+/// Appends what is wrong with a command whose name is known.
+fn check_command(source: &Source, spec: &'static CommandSpec, name: &Token, args: &[Token], acc: &mut Vec<Diagnostic>) {
+    let args = prepare_arguments(source, spec, args);
+    let is_name = |arg: &Token| arg.kind == TokenKind::Word && spec::find(source.slice(arg.span)).is_some();
+    let n_own = args.iter().position(is_name).unwrap_or(args.len());
+    let next_name = args.get(n_own).map(|next| next.span);
+    let n_before = acc.len();
+    let command = BadCommand { source, spec, name: name.span, args: &args[..n_own], next_name };
+    errors::check_arguments(&command, acc);
+    if let (Arguments::FileName(_), [only], true) = (&spec.arguments, command.args, acc.len() == n_before)
+        && !path::is_png(path::unquoted(source, only.span))
+    {
+        acc.push(path::not_a_png(source, only));
+    }
+}
+
+/// Returns the arguments as a person sees them: a sign and the number behind it are one, and a number out of the range of
+/// binary64 is none.
+fn prepare_arguments(source: &Source, spec: &CommandSpec, args: &[Token]) -> Vec<Token> {
+    let mut prepared: Vec<Token> = Vec::with_capacity(args.len());
+    for arg in args {
+        let text = source.slice(arg.span);
+        let is_unsigned = text.starts_with(|first: char| first == '.' || first.is_ascii_digit());
+        match prepared.last_mut() {
+            Some(sign) if is_unsigned && numeral::is_sign(source.slice(sign.span)) => {
+                sign.span = sign.span.to(arg.span)
+            }
+            _ if matches!(spec.arguments, Arguments::FileName(_)) || numeral::is_number(text) => prepared.push(*arg),
+            _ => prepared.push(Token { kind: TokenKind::Word, span: arg.span }),
+        }
+    }
+    prepared
+}

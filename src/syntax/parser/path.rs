@@ -1,0 +1,90 @@
+//! What is wrong with the file name of a `write`.
+
+use crate::diag::words::quoted;
+use crate::diag::{Diagnostic, codes};
+use crate::source::{Source, Span};
+use crate::syntax::parser::errors::BadCommand;
+use crate::syntax::token::{Token, TokenKind};
+
+/// How the name of an image ends.
+const ENDING: &str = ".png";
+
+/// Returns the name that the token below `span` stands for: without its quotes, if it has them.
+pub(super) fn unquoted(source: &Source, span: Span) -> &str {
+    let text = source.slice(span);
+    text.strip_prefix('"').map_or(text, |rest| rest.strip_suffix('"').unwrap_or(rest))
+}
+
+/// Tells whether `name` is one that a `write` takes.
+pub(super) fn is_png(name: &str) -> bool {
+    name.ends_with(ENDING)
+}
+
+/// Returns the diagnostic of a name that is empty or does not end in `.png`.
+pub(super) fn not_a_png(source: &Source, name: &Token) -> Diagnostic {
+    let text = unquoted(source, name.span);
+    if text.trim().is_empty() {
+        return Diagnostic::new(&codes::MISSING_FILE_NAME, name.span, "`write` takes a file name, found an empty one")
+            .label("no name between the quotes")
+            .help("write `\"picture.png\"`");
+    }
+    Diagnostic::new(&codes::NOT_A_PNG, name.span, format!("the file name {} does not end in `{ENDING}`", quoted(text)))
+        .label("not the name of a PNG image")
+        .help(help_for_ending(text, name.kind))
+        .note("images are saved as PNG, whatever their name")
+}
+
+fn help_for_ending(name: &str, kind: TokenKind) -> String {
+    const OTHER_ENDINGS: [&str; 8] = ["jpg", "jpeg", "bmp", "gif", "ppm", "tga", "tiff", "tif"];
+    const FALSE_QUOTES: [char; 9] = ['\'', '"', '`', '“', '”', '„', '‘', '’', '«'];
+    let bare = name.trim_matches(|c| FALSE_QUOTES.contains(&c)).trim_end_matches([';', ',', '.']);
+    if is_png(bare) {
+        return format!("write {}", quoted(bare));
+    }
+    if let (TokenKind::Path, Some((before, comment))) = (kind, name.split_once('#'))
+        && is_png(before)
+    {
+        return format!("put a blank before the comment: `{before} #{comment}`");
+    }
+    let (stem, ending) = name.rsplit_once('.').unwrap_or((name, ""));
+    let lower = ending.to_ascii_lowercase();
+    if lower == "png" || OTHER_ENDINGS.contains(&lower.as_str()) {
+        return format!("write {}", quoted(&format!("{stem}{ENDING}")));
+    }
+    format!("write {}", quoted(&format!("{name}{ENDING}")))
+}
+
+/// Returns the diagnostic of a `write` with nothing behind it. `name` is the place of the word `write`.
+pub(super) fn missing(source: &Source, name: Span) -> Diagnostic {
+    let lines = source.lines();
+    let line_end = lines.line_span(source.text(), lines.line_of(name.start)).end;
+    let rest = source.slice(Span::new(name.end, line_end.max(name.end)));
+    let help = match rest.split_once('#') {
+        Some((_, comment)) if is_png(comment.trim()) => {
+            format!("`#` begins a comment: put the name in quotes, {}", quoted(&format!("\"#{}\"", comment.trim())))
+        }
+        _ => "add the name of the image, such as `write picture.png`".to_owned(),
+    };
+    Diagnostic::new(&codes::MISSING_FILE_NAME, name, "`write` takes 1 file name, found none")
+        .label("needs name.png")
+        .help(help)
+}
+
+/// Returns the diagnostic of a quote that the line does not close.
+pub(super) fn unterminated_quote(source: &Source, span: Span) -> Diagnostic {
+    let name = unquoted(source, span).trim_end();
+    let repair = if is_png(name) { format!("\"{name}\"") } else { format!("\"{name}{ENDING}\"") };
+    Diagnostic::new(&codes::UNTERMINATED_QUOTE, span, "the quote is not closed on its line")
+        .label("begins here")
+        .help(format!("close it: {}", quoted(&repair)))
+}
+
+/// Says what to do about words behind a file name. `surplus` is their place.
+pub(super) fn help_for_surplus(command: &BadCommand<'_>, surplus: Span) -> String {
+    let whole = command.source.slice(command.args[0].span.to(surplus)).trim_matches(['\'', '"']);
+    let first = unquoted(command.source, command.args[0].span);
+    if !is_png(first) && is_png(whole) && !whole.contains('"') {
+        return format!("put a name with blanks in double quotes: {}", quoted(&format!("\"{whole}\"")));
+    }
+    format!("remove {}; the size of an image is not part of a scene", quoted(command.source.slice(surplus)))
+}
