@@ -1,16 +1,53 @@
-//! clisc: compiler and ray tracer for `.cli` scenes.
+//! clisc compiles scenes of the `.cli` language and renders them, each pixel as exact arithmetic gives it.
+//!
+//! The modules below stand in the order in which a scene passes them. [`source`] holds its text, [`syntax`] makes a tree
+//! of it, [`lower`] a program, the arenas and command list of [`ir`]; [`compile`] is these steps in one call, and [`diag`]
+//! holds what they found. Behind [`ir::validate`] nothing can fail for the scene's sake: [`exec`] walks the command list,
+//! [`trace`] renders what a `write` sees with the numbers of [`math`], and [`image`] streams the rows into a PNG.
+//!
+//! The library neither prints nor reads files nor looks at the clock; where images go and who watches are parameters.
+//!
+//! ```
+//! use clisc::exec::{CancellationToken, MemorySink, Options, execute};
+//! use clisc::{compile, image::decode_png, ir, source::Source, trace::Settings};
+//!
+//! let text = "fov 60\nlight 1 1 1  0 0 5\nsurface 0 0 0  1 0 0  0 0 0  1 0\nsphere 0 0 -4 1\nwrite ball.png\n";
+//! let compilation = compile(&Source::new("ball.cli", text));
+//! assert!(compilation.diagnostics.is_empty());
+//!
+//! let program = ir::validate(compilation.program).expect("lowering reports what would be refused here");
+//! let mut images = MemorySink::default();
+//! let options =
+//!     Options { settings: &Settings::default(), observer: &(), cancellation: &CancellationToken::default() };
+//! execute(&program, options, &mut images)?;
+//!
+//! let ball = decode_png(&images.files["ball.png"])?;
+//! assert_eq!(ball.pixel(0, 0), [0, 0, 0]);
+//! assert_eq!(ball.pixel(150, 150), [255, 0, 0]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+pub mod source;
+
+pub mod diag;
+
+pub mod syntax;
+
+pub mod lower;
 
 mod compile;
-pub mod diag;
-pub mod exec;
-pub mod image;
+
 pub mod ir;
-pub mod lower;
+
 pub mod math;
-pub mod source;
-pub mod syntax;
+
+pub mod image;
+
+pub mod trace;
+
+pub mod exec;
+
 #[cfg(feature = "testing")]
 pub mod testing;
-pub mod trace;
 
 pub use compile::{Compilation, compile};
