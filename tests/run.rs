@@ -1,0 +1,310 @@
+//! `clisc run` as its users meet it: exit codes, streams, files.
+
+mod support;
+
+use std::fs;
+
+use crate::support::{Call, Folder, scene};
+
+#[track_caller]
+fn assert_code(call: &Call, code: i32) {
+    assert_eq!(call.code, Some(code), "stdout:\n{}stderr:\n{}", call.stdout, call.stderr);
+}
+
+#[track_caller]
+fn assert_says(text: &str, words: &str) {
+    assert!(text.contains(words), "`{words}` is not in:\n{text}");
+}
+
+#[test]
+fn an_image_is_saved_and_named_on_standard_output() {
+    let folder = Folder::with_scene(&scene("a.png"));
+    let call = folder.clisc(&["run", "a.cli"]);
+    assert_code(&call, 0);
+    assert_says(&call.stdout, "wrote a.png (300x300, ");
+    assert_eq!(call.stderr, "");
+    let image = folder.image("a.png");
+    assert_eq!((image.width(), image.height()), (300, 300));
+    assert_eq!(folder.listing(), ["a.cli", "a.png"]);
+}
+
+#[test]
+fn size_and_folder_are_as_asked() {
+    let folder = Folder::with_scene(&scene("deep/er/a.png"));
+    let call = folder.clisc(&["run", "a.cli", "-o", "out/dir", "--size", "31x7"]);
+    assert_code(&call, 0);
+    assert_says(&call.stdout, "wrote out/dir/deep/er/a.png (31x7, ");
+    let image = folder.image("out/dir/deep/er/a.png");
+    assert_eq!((image.width(), image.height()), (31, 7));
+}
+
+#[test]
+fn the_image_is_that_of_the_library() {
+    let folder = Folder::with_scene(&scene("a.png"));
+    assert_code(&folder.clisc(&["run", "a.cli", "--size", "40x30"]), 0);
+    let image = folder.image("a.png");
+    assert_eq!(image.pixel(0, 0), [25, 51, 76]);
+    assert_ne!(image.pixel(20, 15), [25, 51, 76]);
+}
+
+#[test]
+fn options_of_the_render_reach_it() {
+    let folder = Folder::with_scene(&scene("a.png"));
+    let mut images = Vec::new();
+    for options in [&[][..], &["--samples", "3"], &["--sample-at", "centre"], &["--part", "a"]] {
+        let args = [&["run", "a.cli", "--size", "40x30"], options].concat();
+        assert_code(&folder.clisc(&args), 0);
+        images.push(folder.bytes("a.png"));
+    }
+    for (n, image) in images.iter().enumerate() {
+        assert!(!images[..n].contains(image), "option {n} changes nothing");
+    }
+    let mirror = "fov 60\nlight 1 1 1 0 0 5\nsurface .1 .1 .1 .4 .1 .1 0 0 0 1 .9\nsphere 0 0 -4 1\nsphere 1 1 -3 .5\nwrite a.png\n";
+    folder.put("a.cli", mirror);
+    let levels = ["0", "8"].map(|level| {
+        assert_code(&folder.clisc(&["run", "a.cli", "--size", "40x30", "--max-level", level]), 0);
+        folder.bytes("a.png")
+    });
+    assert_ne!(levels[0], levels[1]);
+}
+
+#[test]
+fn a_scene_with_errors_renders_nothing_and_the_others_are_rendered() {
+    let folder = Folder::with_scene(&scene("a.png"));
+    folder.put("bad.cli", "write early.png\nsphere 1 2\nwrite late.png\n");
+    folder.put("c.cli", scene("c.png"));
+    let call = folder.clisc(&["run", "a.cli", "bad.cli", "c.cli", "--size", "4x4"]);
+    assert_code(&call, 1);
+    assert_says(&call.stderr, "error[E0203]");
+    assert_says(&call.stderr, "bad.cli");
+    assert_eq!(call.stdout.lines().count(), 2, "{}", call.stdout);
+    assert_eq!(folder.listing(), ["a.cli", "a.png", "bad.cli", "c.cli", "c.png"]);
+}
+
+#[test]
+fn an_unreadable_scene_is_an_environment_error_and_the_others_are_rendered() {
+    let folder = Folder::with_scene(&scene("a.png"));
+    folder.put("bad.cli", "sphere\n");
+    let call = folder.clisc(&["run", "missing.cli", "bad.cli", "a.cli", "--size", "4x4"]);
+    assert_code(&call, 2);
+    assert_says(&call.stderr, "error: cannot read `missing.cli`: No such file or directory");
+    assert_eq!(folder.listing(), ["a.cli", "a.png", "bad.cli"]);
+    let call = folder.clisc(&["run", "."]);
+    assert_code(&call, 2);
+    assert_says(&call.stderr, "cannot read `.`: ");
+}
+
+#[test]
+fn a_scene_may_come_from_standard_input() {
+    let folder = Folder::new();
+    let call: Call =
+        folder.command(&["run", "-", "--size", "4x4"]).write_stdin(scene("a.png")).output().unwrap().into();
+    assert_code(&call, 0);
+    assert_eq!(folder.listing(), ["a.png"]);
+    let call: Call = folder.command(&["run", "-"]).write_stdin("sphere\n").output().unwrap().into();
+    assert_code(&call, 1);
+    assert_says(&call.stderr, "<stdin>");
+}
+
+#[test]
+fn a_scene_without_write_is_warned_of() {
+    let folder = Folder::with_scene("fov 60\n");
+    let call = folder.clisc(&["run", "a.cli"]);
+    assert_code(&call, 0);
+    assert_says(&call.stderr, "warning[W0301]");
+    assert_eq!(call.stdout, "");
+    assert_eq!(folder.listing(), ["a.cli"]);
+}
+
+#[test]
+fn quiet_prints_errors_alone() {
+    let folder = Folder::with_scene(&format!("light 9 9 9 0 0 5\n{}", scene("a.png")));
+    let loud = folder.clisc(&["run", "a.cli", "--size", "4x4"]);
+    assert_says(&loud.stderr, "warning[W0303]");
+    let call = folder.clisc(&["run", "a.cli", "--size", "4x4", "--quiet"]);
+    assert_code(&call, 0);
+    assert_eq!((call.stdout.as_str(), call.stderr.as_str()), ("", ""));
+    folder.put("a.cli", "light 9 9 9 0 0 5\nsphere\n");
+    let call = folder.clisc(&["run", "a.cli", "-q"]);
+    assert_code(&call, 1);
+    assert_says(&call.stderr, "error[E0203]");
+    assert!(!call.stderr.contains("warning"), "{}", call.stderr);
+}
+
+#[test]
+fn a_dry_run_checks_and_writes_nothing() {
+    let folder = Folder::with_scene(&scene("sub/a.png"));
+    let call = folder.clisc(&["run", "a.cli", "--dry-run", "-o", "out", "--size", "4x5"]);
+    assert_code(&call, 0);
+    assert_eq!(call.stdout, "would write out/sub/a.png (4x5)\n");
+    folder.put("a.cli", scene("../a.png"));
+    assert_code(&folder.clisc(&["run", "a.cli", "--dry-run", "-o", "out"]), 1);
+    assert_eq!(folder.listing(), ["a.cli"]);
+}
+
+#[test]
+fn stats_as_json_are_one_document() {
+    let folder = Folder::with_scene(&scene("a.png"));
+    folder.put("bad.cli", "sphere\n");
+    let call = folder.clisc(&["run", "a.cli", "bad.cli", "--stats=json", "--size", "30x20", "--threads", "2"]);
+    assert_code(&call, 1);
+    let document: serde_json::Value = serde_json::from_str(&call.stdout).unwrap();
+    assert_eq!(document["threads"], 2);
+    let scene = &document["scenes"][0];
+    assert_eq!((&scene["scene"], &scene["outcome"]), (&"a.cli".into(), &"fine".into()));
+    for time in ["parse_seconds", "lower_seconds", "trace_seconds", "encode_seconds"] {
+        assert!(scene[time].as_f64().unwrap() > 0.0, "{time}");
+    }
+    assert!(scene["eye_rays"].as_u64().unwrap() >= 600, "one a pixel, and more where pixels are settled twice");
+    for count in ["reflected_rays", "shadow_rays", "tests", "refined_pixels", "ties"] {
+        assert!(scene[count].is_u64(), "{count}");
+    }
+    let image = &scene["images"][0];
+    assert_eq!((&image["path"], &image["width"], &image["height"]), (&"a.png".into(), &30.into(), &20.into()));
+    assert_eq!(image["bytes"], folder.bytes("a.png").len());
+    assert_eq!(document["scenes"][1]["outcome"], "scene_errors");
+}
+
+#[test]
+fn stats_as_a_table_name_every_time_and_count() {
+    let folder = Folder::with_scene(&scene("a.png"));
+    let call = folder.clisc(&["run", "a.cli", "--stats", "--size", "30x20"]);
+    assert_code(&call, 0);
+    for row in ["parse", "lower", "trace", "encode", "eye rays", "reflected rays", "shadow rays", "tests", "ties"] {
+        assert_says(&call.stdout, &format!("\n  {row} "));
+    }
+}
+
+#[test]
+fn two_scenes_of_one_file_are_warned_of() {
+    let folder = Folder::with_scene(&scene("x/same.png"));
+    folder.put("b.cli", scene("./x//same.png"));
+    let call = folder.clisc(&["run", "a.cli", "b.cli", "--size", "4x4"]);
+    assert_code(&call, 0);
+    assert_says(&call.stderr, "warning: `a.cli` and `b.cli` both write");
+    let call = folder.clisc(&["run", "a.cli", "--size", "4x4"]);
+    assert_eq!(call.stderr, "");
+}
+
+#[test]
+fn usage_errors_explain_themselves() {
+    let folder = Folder::with_scene(&scene("a.png"));
+    for (args, words) in [
+        (&["run"][..], "<SCENE>"),
+        (&["run", "a.cli", "--size", "70000x2"], "the width 70000 is beyond the limit of 65535"),
+        (&["run", "a.cli", "--size", "300"], "such as 300x200"),
+        (&["run", "a.cli", "--size", "0x1"], "the width is 0"),
+        (&["run", "a.cli", "--samples", "0"], "1..=256"),
+        (&["run", "a.cli", "--samples", "257"], "1..=256"),
+        (&["run", "a.cli", "--part", "c"], "'c'"),
+        (&["run", "a.cli", "--threads", "-1"], "-1"),
+        (&["run", "a.cli", "--wat"], "--wat"),
+        (&["paint"], "paint"),
+    ] {
+        let call = folder.clisc(args);
+        assert_code(&call, 2);
+        assert_says(&call.stderr, words);
+        assert_eq!(call.stdout, "");
+    }
+    assert_eq!(folder.listing(), ["a.cli"]);
+}
+
+#[test]
+fn help_has_examples_for_each_subcommand() {
+    let folder = Folder::new();
+    for command in ["check", "run", "ir", "explain"] {
+        let call = folder.clisc(&[command, "--help"]);
+        assert_code(&call, 0);
+        assert_says(&call.stdout, &format!("  clisc {command} "));
+    }
+}
+
+#[test]
+fn one_thread_and_many_save_the_same_bytes() {
+    let folder = Folder::with_scene(&scene("a.png"));
+    let files = ["1", "2", "3"].map(|n_threads| {
+        assert_code(&folder.clisc(&["run", "a.cli", "--size", "1200x1000", "--threads", n_threads]), 0);
+        folder.bytes("a.png")
+    });
+    assert!(files[0] == files[1] && files[1] == files[2]);
+}
+
+#[test]
+fn the_widest_and_the_tallest_image_can_be_made() {
+    let folder = Folder::with_scene("fov 60\nbackground 1 0 1\nwrite a.png\n");
+    for (size, sides) in [("65535x2", (65535, 2)), ("2x65535", (2, 65535))] {
+        assert_code(&folder.clisc(&["run", "a.cli", "--size", size]), 0);
+        let image = folder.image("a.png");
+        assert_eq!((image.width(), image.height()), sides);
+        assert!(image.rgb().chunks(3).all(|pixel| pixel == [255, 0, 255]));
+    }
+}
+
+#[test]
+fn names_that_lead_out_are_refused_at_their_place() {
+    for (name, code) in [
+        ("/tmp/clisc-refused.png", "E0501"),
+        ("\"C:\\clisc refused.png\"", "E0501"),
+        ("\\\\server\\share\\a.png", "E0501"),
+        ("../a.png", "E0502"),
+        ("sub/../../a.png", "E0502"),
+        ("sub\\..\\a.png", "E0502"),
+    ] {
+        let folder = Folder::new();
+        folder.put("scenes/a.cli", format!("fov 60\nwrite good.png\nwrite {name}\n"));
+        let call = folder.clisc(&["run", "scenes/a.cli", "-o", "out"]);
+        assert_code(&call, 1);
+        assert_says(&call.stderr, &format!("error[{code}]"));
+        assert_says(&call.stderr, "scenes/a.cli:3:7");
+        assert_eq!(call.stdout, "");
+        assert_eq!(folder.listing(), ["scenes/", "scenes/a.cli"], "{name}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn links_that_lead_out_are_refused() {
+    use std::os::unix::fs::symlink;
+    for (link, to, name) in [
+        ("out/sub", "../elsewhere", "sub/a.png"),
+        ("out/a.png", "../elsewhere/a.png", "a.png"),
+        ("out/a.png", "../elsewhere/new.png", "a.png"),
+        ("out/sub", "../missing", "sub/deep/a.png"),
+    ] {
+        let folder = Folder::with_scene(&format!("fov 60\n  write {name}\n"));
+        folder.put("elsewhere/a.png", "precious");
+        fs::create_dir(folder.at("out")).unwrap();
+        symlink(to, folder.at(link)).unwrap();
+        let before = folder.listing();
+        for extra in [&[][..], &["--dry-run"]] {
+            let call = folder.clisc(&[&["run", "a.cli", "-o", "out"], extra].concat());
+            assert_code(&call, 1);
+            assert_says(&call.stderr, "error[E0503]");
+            assert_says(&call.stderr, "a.cli:2:9");
+            assert_eq!(folder.listing(), before);
+            assert_eq!(folder.bytes("elsewhere/a.png"), b"precious");
+        }
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn links_that_stay_inside_are_followed_and_kept() {
+    use std::os::unix::fs::symlink;
+    let folder = Folder::with_scene(&format!("{}write sub/b.png\n", scene("a.png")));
+    folder.put("real/place/old.png", "old");
+    symlink("real", folder.at("out")).unwrap();
+    symlink("place/old.png", folder.at("real/a.png")).unwrap();
+    symlink(folder.at("real/place"), folder.at("real/sub")).unwrap();
+    assert_code(&folder.clisc(&["run", "a.cli", "-o", "out", "--size", "4x4"]), 0);
+    assert!(fs::symlink_metadata(folder.at("real/a.png")).unwrap().is_symlink());
+    assert_eq!(folder.image("real/place/old.png"), folder.image("real/place/b.png"));
+}
+
+#[test]
+fn output_on_a_pipe_has_no_escapes() {
+    let folder = Folder::with_scene("sphere\nwrite a.png\n");
+    folder.put("b.cli", scene("b.png"));
+    let call = folder.clisc(&["run", "a.cli", "b.cli", "--stats"]);
+    assert!(!call.stderr.contains('\x1b') && !call.stdout.contains('\x1b'));
+}
