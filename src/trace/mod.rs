@@ -51,9 +51,10 @@ impl<'p> Tracer<'p> {
     /// Prepares the scene for one image.
     ///
     /// # Panics
-    /// When `settings.samples` is not within 1…[`Settings::MAX_SAMPLES`].
+    /// When `settings.samples` is not within 1…[`Settings::MAX_SAMPLES`] or `max_level` is above [`Settings::MAX_LEVEL`].
     #[must_use]
     pub fn new(view: SceneView<'p>, settings: &Settings) -> Self {
+        assert!(settings.max_level <= Settings::MAX_LEVEL, "at most {} levels", Settings::MAX_LEVEL);
         let sampling = Sampling::new(settings);
         Self {
             scene: Scene::new(view, settings.part),

@@ -70,13 +70,16 @@ pub struct Settings {
     pub samples: u32,
     /// The point about which the samples of a pixel lie.
     pub sample_at: SampleAt,
-    /// The last level that is shaded; the eye ray has level 0.
+    /// The last level that is shaded, at most [`Settings::MAX_LEVEL`]; the eye ray has level 0.
     pub max_level: u32,
 }
 
 impl Settings {
     /// The most samples along a side of a pixel.
     pub const MAX_SAMPLES: u32 = 256;
+
+    /// The largest `max_level`; between parallel mirrors each level costs its time and memory.
+    pub const MAX_LEVEL: u32 = 65535;
 }
 
 impl Default for Settings {

@@ -95,8 +95,8 @@ pub struct RunArgs {
     /// Where in its pixel a sample lies.
     #[arg(long, value_enum, default_value_t)]
     pub sample_at: SampleAt,
-    /// The last level that is shaded: the eye ray has level 0, its reflection level 1, and so on.
-    #[arg(long, value_name = "N", default_value_t = 8)]
+    /// The last level that is shaded: the eye ray has level 0, its reflection level 1, and so on; at most 65535.
+    #[arg(long, value_name = "N", default_value_t = 8, value_parser = value_parser!(u32).range(..=i64::from(Settings::MAX_LEVEL)))]
     pub max_level: u32,
     /// Print times and counts; --stats=json prints one JSON document in place of the other results.
     #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, require_equals = true, default_missing_value = "table")]
