@@ -3,6 +3,8 @@
 mod support;
 
 use std::fs;
+#[cfg(target_os = "linux")]
+use std::io::Write;
 
 use crate::support::{Call, Folder, scene};
 
@@ -307,4 +309,41 @@ fn output_on_a_pipe_has_no_escapes() {
     folder.put("b.cli", scene("b.png"));
     let call = folder.clisc(&["run", "a.cli", "b.cli", "--stats"]);
     assert!(!call.stderr.contains('\x1b') && !call.stdout.contains('\x1b'));
+}
+
+/// Calls the command on a terminal that `script` makes, both streams in one; `None` where there is no `script`.
+#[cfg(target_os = "linux")]
+fn on_a_terminal(folder: &Folder, args: &str, environment: (&str, &str)) -> Option<String> {
+    let command = format!("{} {args}", env!("CARGO_BIN_EXE_clisc"));
+    let mut script = std::process::Command::new("script");
+    script
+        .args(["-qec", &command, "/dev/null"])
+        .current_dir(folder.at("."))
+        .env("TERM", "xterm")
+        .env_remove("NO_COLOR");
+    let output = script.env(environment.0, environment.1).stdin(std::process::Stdio::null()).output();
+    if output.is_err() {
+        let _ = writeln!(std::io::stderr(), "\nSKIPPED: there is no `script` to make a terminal");
+    }
+    Some(String::from_utf8(output.ok()?.stdout).expect("text"))
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_terminal_gets_colours_and_a_bar_for_what_takes_time() {
+    let folder = Folder::with_scene(&scene("a.png"));
+    folder.put("bad.cli", "sphere\n");
+    let plain = ("CLISC_TEST", "1");
+    let Some(short) = on_a_terminal(&folder, "run a.cli --size 20x20", plain) else { return };
+    assert!(short.starts_with("wrote a.png"), "{short}");
+    let long = on_a_terminal(&folder, "run a.cli --size 5000x5000 --threads 1", plain).unwrap();
+    assert_says(&long, "a.png [==");
+    assert_says(&long, "left");
+    let quiet = on_a_terminal(&folder, "run a.cli --size 5000x5000 --threads 1 --quiet", plain).unwrap();
+    assert_eq!(quiet, "");
+    assert_says(&on_a_terminal(&folder, "run bad.cli", plain).unwrap(), "\x1b[");
+    for no_color in [("NO_COLOR", "1"), ("TERM", "dumb")] {
+        let bad = on_a_terminal(&folder, "run bad.cli", no_color).unwrap();
+        assert!(bad.contains("error[E0203]") && !bad.contains('\x1b'), "{bad}");
+    }
 }

@@ -1,11 +1,12 @@
 //! The clock of the executor, and its progress on the terminal.
 
+use std::fmt;
 use std::io::{self, IsTerminal};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use clisc::exec::{Event, Observer};
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressState, ProgressStyle};
 
 /// A render shorter than this shows no bar.
 const MOMENT: Duration = Duration::from_millis(500);
@@ -58,13 +59,22 @@ impl Progress {
 
 impl Image {
     fn new_bar(&self) -> ProgressBar {
-        let template = "{msg} [{bar:40}] {percent}% {elapsed} of about {duration}";
-        let style = ProgressStyle::with_template(template).expect("a sound template").progress_chars("=> ");
+        let style = ProgressStyle::with_template("{msg} [{bar:40}] {percent:>3}%  {left}")
+            .expect("a sound template")
+            .progress_chars("=> ")
+            .with_key("left", |state: &ProgressState, out: &mut dyn fmt::Write| drop(write_time_left(state, out)));
         let bar = ProgressBar::new(self.n_rows.into()).with_style(style).with_message(self.name.clone());
         let bar = bar.with_elapsed(self.start.elapsed());
         bar.enable_steady_tick(TICK);
         bar
     }
+}
+
+/// Writes how long the rest takes at the speed so far; indicatif's own guess knows nothing of the time before the bar.
+fn write_time_left(state: &ProgressState, out: &mut dyn fmt::Write) -> fmt::Result {
+    let n_left = state.len().unwrap_or_default().saturating_sub(state.pos());
+    let seconds = state.elapsed().as_secs_f64() * n_left as f64 / state.pos().max(1) as f64;
+    write!(out, "about {} left", HumanDuration(Duration::from_secs_f64(seconds.ceil())))
 }
 
 impl Observer for Progress {
