@@ -101,7 +101,7 @@ pub struct RunArgs {
     /// Print times and counts; --stats=json prints one JSON document in place of the other results.
     #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, require_equals = true, default_missing_value = "table")]
     pub stats: Option<StatsFormat>,
-    /// Print nothing but errors.
+    /// Print nothing but errors, and the --stats asked for.
     #[arg(short, long)]
     pub quiet: bool,
     /// Check everything, render and save nothing.
