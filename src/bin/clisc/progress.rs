@@ -62,7 +62,9 @@ impl Image {
         let style = ProgressStyle::with_template("{msg} [{bar:40}] {percent:>3}%  {left}")
             .expect("a sound template")
             .progress_chars("=> ")
-            .with_key("left", |state: &ProgressState, out: &mut dyn fmt::Write| drop(write_time_left(state, out)));
+            .with_key("left", |state: &ProgressState, out: &mut dyn fmt::Write| {
+                let _ = write_time_left(state, out);
+            });
         let bar = ProgressBar::new(self.n_rows.into()).with_style(style).with_message(self.name.clone());
         let bar = bar.with_elapsed(self.start.elapsed());
         bar.enable_steady_tick(TICK);
