@@ -1,0 +1,30 @@
+//! Points and directions of balls.
+
+use super::ball::Ball;
+
+/// A point or a direction.
+pub type Vec3 = [Ball; 3];
+
+pub fn sub(a: &Vec3, b: &Vec3) -> Vec3 {
+    [&a[0] - &b[0], &a[1] - &b[1], &a[2] - &b[2]]
+}
+
+pub fn add(a: &Vec3, b: &Vec3) -> Vec3 {
+    [&a[0] + &b[0], &a[1] + &b[1], &a[2] + &b[2]]
+}
+
+pub fn scale(s: &Ball, a: &Vec3) -> Vec3 {
+    [s * &a[0], s * &a[1], s * &a[2]]
+}
+
+pub fn divide(a: &Vec3, s: &Ball) -> Vec3 {
+    [&a[0] / s, &a[1] / s, &a[2] / s]
+}
+
+pub fn dot(a: &Vec3, b: &Vec3) -> Ball {
+    &(&(&a[0] * &b[0]) + &(&a[1] * &b[1])) + &(&a[2] * &b[2])
+}
+
+pub fn negate(a: &Vec3) -> Vec3 {
+    [-&a[0], -&a[1], -&a[2]]
+}
