@@ -1,0 +1,243 @@
+//! The tracer gives, in every pixel, what exact arithmetic gives.
+//!
+//! Families of hard scenes are rendered by the tracer and by the oracle, which shares nothing with it but the IR. The
+//! oracle in turn is held against itself and against the original images.
+//!
+//! `CLISC_SWEEP=N cargo test --test exactness` takes N seeds of each family, at larger sizes; the name of a family in
+//! `CLISC_FAMILY` leaves out the others.
+
+mod families;
+mod oracle;
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use clisc::ir::{self, Registers, SceneView};
+use clisc::source::Source;
+use clisc::trace::{Part, SampleAt, Settings, Size, Tracer};
+
+use families::sketch::Sketch;
+use families::{FAMILIES, FINEST, Family};
+use oracle::{Oracle, Pixel, Tie};
+
+/// Seeds of each family in an ordinary run.
+const N_SEEDS: u64 = 3;
+
+/// The sizes that the seeds of a family take in turn: even and odd, upright and wide.
+const SIZES: [[u32; 2]; 3] = [[32, 24], [23, 31], [30, 30]];
+/// The sizes of a sweep.
+const SWEEP_SIZES: [[u32; 2]; 3] = [[96, 72], [61, 81], [150, 150]];
+
+/// Pixels of a part B image in which the original differs from exact arithmetic, row 0 left out, for i1 … i10.
+const ORIGINAL_DIFFERENCES: [usize; 10] = [0, 2, 0, 0, 5, 2, 4, 0, 15, 13];
+
+/// A pixel in which the tracer and the oracle differ.
+struct Difference {
+    column: u32,
+    row: u32,
+    traced: [u8; 3],
+    exact: Pixel,
+}
+
+fn sized([width, height]: [u32; 2]) -> Settings {
+    let size = Size::new(width, height).expect("a size within the limits");
+    Settings { size, ..Settings::default() }
+}
+
+fn trace(view: SceneView<'_>, settings: &Settings) -> Vec<[u8; 3]> {
+    let [width, height] = [settings.size.width(), settings.size.height()];
+    let mut rgb = vec![0; width as usize * height as usize * 3];
+    Tracer::new(view, settings).render_rows(0..height, &mut rgb);
+    rgb.as_chunks().0.to_vec()
+}
+
+fn compare(view: SceneView<'_>, settings: &Settings) -> Vec<Difference> {
+    let width = settings.size.width();
+    let exact = Oracle::new(view, settings).image();
+    (0..)
+        .zip(trace(view, settings).into_iter().zip(exact))
+        .filter(|(_, (traced, exact))| *traced != exact.rgb)
+        .map(|(i, (traced, exact))| Difference { column: i % width, row: i / width, traced, exact })
+        .collect()
+}
+
+/// Compares one scene; of a difference returns all that one needs to look into it.
+fn check(title: &str, sketch: &Sketch, settings: &Settings) -> Option<String> {
+    let differences = compare(sketch.make().view(), settings);
+    if differences.is_empty() {
+        return None;
+    }
+    let mut text = format!("{title}, {settings:?}: {} pixels differ\n", differences.len());
+    for Difference { column, row, traced, exact } in differences.iter().take(5) {
+        writeln!(text, "  ({column}, {row}): traced {traced:?}, {exact:?}").expect("a string takes any text");
+    }
+    text.push_str(&sketch.text());
+    Some(text)
+}
+
+fn assert_none(failures: &[String]) {
+    assert!(failures.is_empty(), "{} scenes differ\n{}", failures.len(), failures.join("\n"));
+}
+
+/// Returns the seeds of a sweep, if this is one.
+fn sweep() -> Option<u64> {
+    std::env::var("CLISC_SWEEP").ok().map(|n| n.parse().expect("CLISC_SWEEP is a number of seeds"))
+}
+
+/// Returns families at their seeds, each with a title and the size of its turn.
+fn cases(families: &[Family]) -> impl Iterator<Item = (String, Sketch, [u32; 2])> {
+    let n_seeds = sweep().unwrap_or(N_SEEDS);
+    let sizes = if sweep().is_some() { SWEEP_SIZES } else { SIZES };
+    let only = std::env::var("CLISC_FAMILY").ok();
+    let chosen = families.iter().filter(move |family| only.as_ref().is_none_or(|only| *only == family.name));
+    chosen.flat_map(move |family| {
+        (0..n_seeds).map(move |seed| {
+            let size = sizes[seed as usize % sizes.len()];
+            (format!("{} seed {seed}", family.name), family.sketch(seed), size)
+        })
+    })
+}
+
+#[test]
+fn every_family_is_exact() {
+    let failures: Vec<_> =
+        cases(FAMILIES).filter_map(|(title, sketch, size)| check(&title, &sketch, &sized(size))).collect();
+    assert_none(&failures);
+}
+
+#[test]
+fn the_finest_families_need_more_bits_than_the_tracer_has() {
+    // FIXME: double-double loses these rays, and takes what it cannot tell for ties. Once no pixel differs any more the
+    // families belong to the others.
+    for family in FINEST {
+        let n_wrong: usize =
+            (0..3).map(|seed| compare(family.sketch(seed).make().view(), &sized([23, 31])).len()).sum();
+        assert!(n_wrong > 0, "{} is exact now", family.name);
+    }
+}
+
+#[test]
+fn every_setting_is_exact() {
+    let base = sized([16, 13]);
+    let settings = [
+        Settings { part: Part::A, ..sized([32, 24]) },
+        Settings { sample_at: SampleAt::Centre, ..base.clone() },
+        Settings { samples: 2, ..base.clone() },
+        Settings { samples: 3, sample_at: SampleAt::Centre, ..base.clone() },
+        Settings { max_level: 0, ..base.clone() },
+        Settings { max_level: 1, ..base.clone() },
+        Settings { max_level: 12, ..base.clone() },
+        sized([1, 1]),
+        sized([40, 3]),
+    ];
+    let mut failures = Vec::new();
+    for name in ["ordinary", "hall of mirrors", "extreme surfaces", "eye in a mirrored cylinder", "touching rays"] {
+        let family = FAMILIES.iter().find(|family| family.name == name).expect("a family of this name");
+        for (seed, settings) in (0..).zip(&settings) {
+            failures.extend(check(&format!("{name} seed {seed}"), &family.sketch(seed), settings));
+        }
+    }
+    assert_none(&failures);
+}
+
+#[test]
+fn the_text_of_a_sketch_says_the_same_scene() {
+    for (title, sketch, size) in cases(FAMILIES) {
+        let compiled = clisc::compile(&Source::new("scene.cli", sketch.text()));
+        assert!(!compiled.has_errors(), "{title}\n{}", sketch.text());
+        let program = ir::validate(compiled.program).expect("a sound program");
+        assert_eq!(trace(whole(&program), &sized(size)), trace(sketch.make().view(), &sized(size)), "{title}");
+    }
+}
+
+/// Returns the scene as the last `write` sees it.
+fn whole(program: &ir::Valid) -> SceneView<'_> {
+    let mut registers = Registers::default();
+    program.commands.iter().for_each(|command| registers.step(command));
+    SceneView::new(program, registers)
+}
+
+#[test]
+fn the_oracle_does_not_depend_on_its_precision() {
+    for (title, sketch, size) in cases(FAMILIES).step_by(4) {
+        let made = sketch.make();
+        let settings = sized(size);
+        let few = Oracle::with_ladder(made.view(), &settings, &[192, 384, 768, 1536, 3072]);
+        let many = Oracle::new(made.view(), &settings);
+        let width = settings.size.width();
+        for (i, pixel) in (0..).zip(many.image()).step_by(7) {
+            let other = few.pixel(i % width, i / width);
+            assert_eq!((pixel.rgb, pixel.open_ties), (other.rgb, other.open_ties), "{title} pixel {i}");
+        }
+    }
+}
+
+#[test]
+fn the_oracle_does_not_depend_on_its_filter() {
+    for (title, sketch, size) in cases(FAMILIES).step_by(2) {
+        let made = sketch.make();
+        let settings = sized(size);
+        let unfiltered = Oracle::new(made.view(), &settings).testing_all();
+        let width = settings.size.width();
+        for (i, pixel) in (0..).zip(Oracle::new(made.view(), &settings).image()).step_by(17) {
+            assert_eq!(pixel.rgb, unfiltered.pixel(i % width, i / width).rgb, "{title} pixel {i}");
+        }
+    }
+}
+
+#[test]
+fn the_oracle_draws_touching_rays_and_counts_them() {
+    let scene = "fov 60\nlight 1 1 1 0 0 5\nsurface 0 .2 0 .4 .1 .1 0 0 0 1 0\nsphere 0 0 -4 1\nwrite i.png\n";
+    let program = ir::validate(clisc::compile(&Source::new("scene.cli", scene)).program).expect("a sound program");
+    let oracle = Oracle::new(whole(&program), &sized([300, 300]));
+    let touching = oracle.pixel(138, 84);
+    assert_eq!((touching.rgb, touching.open_ties.of(Tie::Tangent)), ([14, 54, 3], 1));
+    let beside = oracle.pixel(138, 83);
+    assert_eq!((beside.rgb, beside.open_ties.total()), ([0; 3], 0));
+}
+
+/// Returns the folder of the original scenes, where there is one.
+fn originals() -> Option<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/course/2018");
+    folder.is_dir().then_some(folder)
+}
+
+fn compile_original(folder: &Path, number: usize) -> ir::Valid {
+    let text = std::fs::read_to_string(folder.join(format!("i{number}.cli"))).expect("an original scene");
+    let compiled = clisc::compile(&Source::new(format!("i{number}.cli"), text));
+    assert!(!compiled.has_errors(), "i{number}: {:?}", compiled.diagnostics);
+    ir::validate(compiled.program).expect("a sound program")
+}
+
+/// In an ordinary run every eleventh pixel, in a sweep all.
+#[test]
+fn the_oracle_paints_the_original_images() {
+    let Some(folder) = originals() else { return };
+    let step = if sweep().is_some() { 1 } else { 11 };
+    for (i, &n_allowed) in ORIGINAL_DIFFERENCES.iter().enumerate() {
+        let number = i + 1;
+        let program = compile_original(&folder, number);
+        let original = image::open(folder.join(format!("i{number}.png"))).expect("an original image").to_rgb8();
+        let oracle = Oracle::new(whole(&program), &sized([300, 300]));
+        let pixels = (300..300 * 300).step_by(step).map(|i| (i % 300, i / 300));
+        let n_different = pixels.filter(|&(x, y)| original.get_pixel(x, y).0 != oracle.pixel(x, y).rgb).count();
+        assert!(n_different <= n_allowed, "i{number} differs in {n_different} pixels");
+        assert!(step > 1 || n_different == n_allowed, "i{number} differs in {n_different} pixels");
+    }
+}
+
+/// In an ordinary run at a smaller size, in a sweep at that of the original images.
+#[test]
+fn the_original_scenes_are_exact() {
+    let Some(folder) = originals() else { return };
+    let size = if sweep().is_some() { [300, 300] } else { [50, 50] };
+    for number in 1..=10 {
+        for part in [Part::A, Part::B] {
+            let program = compile_original(&folder, number);
+            let settings = Settings { part, ..sized(size) };
+            let differences = compare(whole(&program), &settings);
+            let places: Vec<_> = differences.iter().map(|d| (d.column, d.row, d.traced, &d.exact)).collect();
+            assert!(places.is_empty(), "i{number} {part:?}: {places:?}");
+        }
+    }
+}
