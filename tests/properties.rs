@@ -1,0 +1,133 @@
+//! Laws of the tracer that need no oracle: what must not change the image, and what must mirror it.
+
+mod families;
+
+use std::ops::Range;
+
+use clisc::ir::SceneView;
+use clisc::trace::{Settings, Size, Tracer};
+
+use families::FAMILIES;
+use families::sketch::{Finish, Sketch};
+
+/// Seeds of each family.
+const N_SEEDS: u64 = 3;
+
+const WIDTH: u32 = 48;
+const HEIGHT: u32 = 36;
+
+fn settings() -> Settings {
+    Settings { size: Size::new(WIDTH, HEIGHT).expect("a size within the limits"), ..Settings::default() }
+}
+
+fn render_rows(view: SceneView<'_>, rows: Range<u32>) -> Vec<u8> {
+    let mut rgb = vec![0; rows.len() * WIDTH as usize * 3];
+    Tracer::new(view, &settings()).render_rows(rows, &mut rgb);
+    rgb
+}
+
+fn render(sketch: &Sketch) -> Vec<u8> {
+    render_rows(sketch.make().view(), 0..HEIGHT)
+}
+
+/// Calls `law` with every family at its seeds.
+fn for_all_sketches(law: impl Fn(&str, &Sketch)) {
+    for family in FAMILIES {
+        for seed in 0..N_SEEDS {
+            law(&format!("{} seed {seed}", family.name), &family.sketch(seed));
+        }
+    }
+}
+
+#[track_caller]
+fn assert_same(title: &str, sketch: &Sketch, image: &[u8], other: &[u8]) {
+    let n_different = image.chunks(3).zip(other.chunks(3)).filter(|(a, b)| a != b).count();
+    let first = image.chunks(3).zip(other.chunks(3)).position(|(a, b)| a != b).unwrap_or(0);
+    let [column, row] = [first % WIDTH as usize, first / WIDTH as usize];
+    assert!(
+        n_different == 0,
+        "{title}: {n_different} pixels differ, first ({column}, {row}): {:?} and {:?}\n{}",
+        &image[3 * first..3 * first + 3],
+        &other[3 * first..3 * first + 3],
+        sketch.text()
+    );
+}
+
+#[test]
+fn threads_and_bands_do_not_change_the_image() {
+    let pools = [1, 2, 5].map(|n| rayon::ThreadPoolBuilder::new().num_threads(n).build().expect("a pool of threads"));
+    for_all_sketches(|title, sketch| {
+        let [one, two, five] = pools.each_ref().map(|pool| pool.install(|| render(sketch)));
+        assert_same(title, sketch, &one, &two);
+        assert_same(title, sketch, &one, &five);
+        let made = sketch.make();
+        let bands = [0..1, 1..8, 8..35, 35..HEIGHT].map(|rows| render_rows(made.view(), rows)).concat();
+        assert_same(title, sketch, &one, &bands);
+    });
+}
+
+#[test]
+fn a_power_of_two_does_not_change_the_image() {
+    for_all_sketches(|title, sketch| {
+        let image = render(sketch);
+        for exponent in [-300, -171, -1, 5, 200, 300] {
+            let factor = f64::from_bits(((1023 + exponent) as u64) << 52);
+            let scaled = sketch.map_lengths(|length| length * factor);
+            // Beyond the normal numbers it would be another scene.
+            if scaled.is_normal() {
+                assert_same(&format!("{title} scaled by 2^{exponent}"), sketch, &image, &render(&scaled));
+            }
+        }
+    });
+}
+
+#[test]
+fn the_order_of_distinct_objects_does_not_change_the_image() {
+    // Families without ties between objects.
+    let without_ties =
+        ["ordinary", "crowd", "eye in a mirrored sphere", "eye in a mirrored cylinder", "lens of 175 degrees"];
+    for family in FAMILIES.iter().filter(|family| without_ties.contains(&family.name)) {
+        for seed in 0..4 * N_SEEDS {
+            let sketch = family.sketch(seed);
+            let title = format!("{} seed {seed} reversed", family.name);
+            assert_same(&title, &sketch, &render(&sketch), &render(&sketch.reversed()));
+        }
+    }
+}
+
+#[test]
+fn copies_behind_the_first_are_never_seen() {
+    let garish =
+        Finish { ambient: [1.0, 0.0, 1.0], diffuse: [0.0; 3], specular: [1.0; 3], shininess: 1.0, reflectance: 1.0 };
+    for_all_sketches(|title, sketch| {
+        assert_same(&format!("{title} with copies"), sketch, &render(sketch), &render(&sketch.with_copies(garish)));
+    });
+}
+
+#[test]
+fn a_black_light_changes_nothing() {
+    for_all_sketches(|title, sketch| {
+        let mut lit = sketch.clone();
+        lit.light([0.0; 3], [0.3, 0.7, -1.1].map(|length| length * sketch.largest_length()));
+        assert_same(&format!("{title} with a black light"), sketch, &render(sketch), &render(&lit));
+    });
+}
+
+#[test]
+fn a_mirrored_scene_gives_a_mirrored_image() {
+    for_all_sketches(|title, sketch| {
+        let image = render(sketch);
+        let mirrored = render(&sketch.mirrored());
+        // Samples lie on the left edge of a pixel: column i mirrors column W − i, and column 0 has no counterpart.
+        let turn = |image: &[u8]| -> Vec<u8> {
+            let rows = image.chunks(WIDTH as usize * 3);
+            rows.flat_map(|row| row.chunks(3).take(1).chain(row.chunks(3).skip(1).rev()).flatten().copied()).collect()
+        };
+        let mut turned = turn(&mirrored);
+        for row in 0..HEIGHT as usize {
+            let first = row * WIDTH as usize * 3;
+            turned[first..first + 3].copy_from_slice(&image[first..first + 3]);
+        }
+        assert_same(&format!("{title} mirrored"), sketch, &image, &turned);
+    });
+}
