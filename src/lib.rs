@@ -1,7 +1,7 @@
 //! clisc compiles scenes of the `.cli` language and renders them, each pixel as exact arithmetic gives it.
 //!
 //! The modules below stand in the order in which a scene passes them. [`source`] holds its text, [`syntax`] makes a tree
-//! of it, [`lower`] a program, the arenas and command list of [`ir`]; [`compile`] is these steps in one call, and [`diag`]
+//! of it, [`lower`] a program, the arenas and command list of [`ir`]; [`compile()`] is these steps in one call, and [`diag`]
 //! holds what they found. Behind [`ir::validate`] nothing can fail for the scene's sake: [`exec`] walks the command list,
 //! [`trace`] renders what a `write` sees with the numbers of [`math`], and [`image`] streams the rows into a PNG.
 //!

@@ -1,6 +1,6 @@
 //! The scene as the graphics wing knows it: arenas, a command list, and the proof that both are sound.
 //!
-//! Lowering builds a [`Program`]; [`validate`] turns it into a [`Valid`], the only thing a renderer takes. A `write` sees
+//! Lowering builds a [`Program`]; [`validate()`] turns it into a [`Valid`], the only thing a renderer takes. A `write` sees
 //! the arenas through a [`SceneView`], a set of lengths, so that nothing is copied.
 //!
 //! Never here: text, rays, anything that edits a finished program.
