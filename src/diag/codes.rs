@@ -96,3 +96,38 @@ codes! {
 pub fn find(id: &str) -> Option<&'static Code> {
     ALL.iter().copied().find(|code| code.id.eq_ignore_ascii_case(id))
 }
+
+/// Returns the code whose id is nearest to `id` in spelling, if one is near.
+#[must_use]
+pub fn nearest(id: &str) -> Option<&'static Code> {
+    const MAX_LEN: usize = 10;
+    const MAX_DISTANCE: usize = 2;
+    let id = id.to_ascii_uppercase();
+    if id.len() > MAX_LEN {
+        return None;
+    }
+    let distance = |code: &&Code| strsim::osa_distance(&id, code.id);
+    ALL.iter().copied().filter(|code| distance(code) <= MAX_DISTANCE).min_by_key(distance)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_table_is_sorted_by_family_and_number() {
+        let (errors, warnings): (Vec<_>, Vec<_>) = ALL.iter().partition(|code| code.severity == Severity::Error);
+        assert!(errors.iter().all(|code| code.id.starts_with('E')));
+        assert!(warnings.iter().all(|code| code.id.starts_with('W')));
+        assert!(ALL.is_sorted_by_key(|code| (code.severity == Severity::Warning, code.id)));
+    }
+
+    #[test]
+    fn codes_are_found_by_name() {
+        assert_eq!(find("e0203"), Some(&MISSING_ARGUMENT));
+        assert_eq!(find("E9999"), None);
+        assert_eq!(nearest("E0103").map(|code| code.id), Some("E0101"));
+        assert_eq!(nearest("0203").map(|code| code.id), Some("E0203"));
+        assert_eq!(nearest("banana"), None);
+    }
+}

@@ -6,12 +6,14 @@
 //! Never here: text, rays, anything that edits a finished program.
 
 mod arena;
+mod dump;
 mod program;
 mod scene;
 mod validate;
 mod view;
 
 pub use arena::{Arena, Handle};
+pub use dump::{dump_arenas, dump_arenas_json, dump_commands, dump_commands_json};
 pub use program::{Command, Origins, Program};
 pub use scene::{Cylinder, Light, Sphere, Surface};
 pub use validate::{EquationId, Equations, Valid, Violation, validate};

@@ -3,11 +3,13 @@
 //! Never here: what a command means for the scene (see `lower`), opening files, drawing diagnostics.
 
 pub mod ast;
+mod dump;
 mod lexer;
 mod parser;
 pub mod spec;
 mod token;
 
+pub use dump::{dump_ast, dump_ast_json, dump_tokens, dump_tokens_json};
 pub use lexer::lex;
 pub use parser::{Parse, argument_spans, file_name, parse, parse_in_chunks};
 pub use token::{Token, TokenKind};

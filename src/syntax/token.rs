@@ -3,8 +3,7 @@
 use crate::source::Span;
 
 /// The kinds of token. Blanks, comments and line ends are tokens too, so that the tokens of a scene tile its text.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum TokenKind {
     /// The byte-order mark at the start of a file.
     Bom,
@@ -33,6 +32,25 @@ pub enum TokenKind {
 }
 
 impl TokenKind {
+    /// Returns the name that dumps show.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Bom => "bom",
+            Self::Newline => "newline",
+            Self::Blank => "blank",
+            Self::Comment => "comment",
+            Self::Word => "word",
+            Self::Number => "number",
+            Self::Path => "path",
+            Self::Quoted => "quoted",
+            Self::OpenQuote => "open-quote",
+            Self::ForeignBlank => "foreign-blank",
+            Self::LoneReturn => "lone-return",
+            Self::Control => "control",
+        }
+    }
+
     /// Tells whether the token means something to the parser: it is a name, an argument or one that went wrong.
     #[must_use]
     pub const fn is_significant(self) -> bool {

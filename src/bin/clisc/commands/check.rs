@@ -1,25 +1,154 @@
 //! `clisc check`.
 
+use std::ffi::OsStr;
+use std::io::Write;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Context;
+use clisc::diag::render::{Color, JsonReport, render_human, render_short};
+use clisc::diag::words::counted;
+use clisc::diag::{Diagnostic, Severity};
 use clisc::source::Source;
 
-use crate::args::CheckArgs;
+use crate::args::{CheckArgs, CheckFormat};
+use crate::outcome::Outcome;
+use crate::{input, print};
 
-/// Checks scenes.
+/// Checks scenes. What is wrong with them is the result and goes to standard output; a scene that cannot be read does
+/// not keep the others from being checked.
 pub fn run(args: &CheckArgs) -> anyhow::Result<ExitCode> {
+    let mut printer = Printer::new(args.format)?;
+    let mut tally = Tally::default();
     for path in &args.paths {
-        let bytes = std::fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
-        let source = Source::from_bytes(path.display().to_string(), bytes)?;
-        let compilation = clisc::compile(&source);
-        let mut out = std::io::stdout().lock();
-        clisc::diag::render::render_human(
-            &source,
-            &compilation.diagnostics,
-            clisc::diag::render::Color::Never,
-            &mut out,
-        )?;
+        match find_scenes(path) {
+            Ok(scenes) => scenes.iter().try_for_each(|scene| check(scene, &mut printer, &mut tally))?,
+            Err(error) => tally.miss(&error),
+        }
     }
-    Ok(ExitCode::SUCCESS)
+    printer.finish()?;
+    print::to_stderr(&tally.summary());
+    Ok(tally.outcome(args.deny_warnings).into())
+}
+
+/// Checks one scene.
+fn check(path: &Path, printer: &mut Printer, tally: &mut Tally) -> anyhow::Result<()> {
+    match input::read(path) {
+        Ok(source) => {
+            let compilation = clisc::compile(&source);
+            tally.add(&compilation.diagnostics);
+            printer.print(&source, &compilation.diagnostics)?;
+        }
+        Err(error) => tally.miss(&error),
+    }
+    Ok(())
+}
+
+/// Returns the scenes that an argument means: itself, or every `.cli` file below the folder it names.
+fn find_scenes(path: &Path) -> anyhow::Result<Vec<PathBuf>> {
+    if !path.is_dir() {
+        return Ok(vec![path.to_owned()]);
+    }
+    let mut scenes = Vec::new();
+    walk(path, &mut scenes)?;
+    anyhow::ensure!(!scenes.is_empty(), "there is no .cli file below `{}`", path.display());
+    Ok(scenes)
+}
+
+/// Appends the scenes below a folder, sorted by name; links to folders are not followed.
+fn walk(folder: &Path, scenes: &mut Vec<PathBuf>) -> anyhow::Result<()> {
+    let context = || format!("cannot read the folder `{}`", folder.display());
+    let entries = std::fs::read_dir(folder).with_context(context)?;
+    let mut entries = entries.collect::<Result<Vec<_>, _>>().with_context(context)?;
+    entries.sort_by_key(std::fs::DirEntry::file_name);
+    for entry in entries {
+        let path = entry.path();
+        if entry.file_type().with_context(context)?.is_dir() {
+            walk(&path, scenes)?;
+        } else if path.extension() == Some(OsStr::new("cli")) {
+            scenes.push(path);
+        }
+    }
+    Ok(())
+}
+
+/// What has been found so far.
+#[derive(Debug, Default)]
+struct Tally {
+    n_scenes: usize,
+    n_errors: usize,
+    n_warnings: usize,
+    has_missed: bool,
+}
+
+impl Tally {
+    fn add(&mut self, diagnostics: &[Diagnostic]) {
+        self.n_scenes += 1;
+        for diagnostic in diagnostics {
+            match diagnostic.severity() {
+                Severity::Error => self.n_errors += 1,
+                Severity::Warning => self.n_warnings += 1,
+            }
+        }
+    }
+
+    /// Tells of a scene that could not be read.
+    fn miss(&mut self, error: &anyhow::Error) {
+        self.has_missed = true;
+        print::to_stderr(&format!("error: {error:#}\n"));
+    }
+
+    fn summary(&self) -> String {
+        let scenes = counted(self.n_scenes, "scene");
+        format!("{scenes} checked: {}, {}\n", counted(self.n_errors, "error"), counted(self.n_warnings, "warning"))
+    }
+
+    fn outcome(&self, deny_warnings: bool) -> Outcome {
+        let n_bad = self.n_errors + if deny_warnings { self.n_warnings } else { 0 };
+        match (self.has_missed, n_bad) {
+            (true, _) => Outcome::Environment,
+            (false, 0) => Outcome::Fine,
+            (false, _) => Outcome::SceneErrors,
+        }
+    }
+}
+
+/// Prints diagnostics as the command line asks.
+enum Printer {
+    Human(Color),
+    Short,
+    Json(JsonReport<Box<dyn Write>>),
+}
+
+const CANNOT_WRITE: &str = "cannot write to standard output";
+
+impl Printer {
+    fn new(format: CheckFormat) -> anyhow::Result<Self> {
+        Ok(match format {
+            CheckFormat::Human if print::stdout_has_color() => Self::Human(Color::Always),
+            CheckFormat::Human => Self::Human(Color::Never),
+            CheckFormat::Short => Self::Short,
+            CheckFormat::Json => {
+                let out: Box<dyn Write> = Box::new(print::stdout());
+                Self::Json(JsonReport::begin(out).context(CANNOT_WRITE)?)
+            }
+        })
+    }
+
+    fn print(&mut self, source: &Source, diagnostics: &[Diagnostic]) -> anyhow::Result<()> {
+        let mut out = print::stdout();
+        let written = match self {
+            Self::Human(color) => render_human(source, diagnostics, *color, &mut out),
+            Self::Short => render_short(source, diagnostics, &mut out),
+            Self::Json(report) => report.add(source, diagnostics),
+        };
+        written.and_then(|()| out.flush()).context(CANNOT_WRITE)
+    }
+
+    fn finish(self) -> anyhow::Result<()> {
+        if let Self::Json(report) = self {
+            report.finish().and_then(|mut out| out.flush()).context(CANNOT_WRITE)?;
+        }
+        Ok(())
+    }
 }

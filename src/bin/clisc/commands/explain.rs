@@ -2,9 +2,26 @@
 
 use std::process::ExitCode;
 
-use crate::args::ExplainArgs;
+use clisc::diag::codes;
 
-/// Explains a code.
-pub fn run(_args: &ExplainArgs) -> anyhow::Result<ExitCode> {
-    anyhow::bail!("`clisc explain` is being built")
+use crate::args::ExplainArgs;
+use crate::outcome::Outcome;
+use crate::print;
+
+/// Explains a code, or lists them all.
+pub fn run(args: &ExplainArgs) -> anyhow::Result<ExitCode> {
+    let Some(id) = &args.code else {
+        print::to_stdout(&list())?;
+        return Ok(Outcome::Fine.into());
+    };
+    let Some(code) = codes::find(id.trim()) else {
+        let nearest = codes::nearest(id.trim()).map_or_else(String::new, |code| format!("; did you mean {}?", code.id));
+        anyhow::bail!("there is no code `{id}`{nearest} (`clisc explain` lists them all)");
+    };
+    print::to_stdout(code.explanation)?;
+    Ok(Outcome::Fine.into())
+}
+
+fn list() -> String {
+    codes::ALL.iter().map(|code| format!("{}  {:7}  {}\n", code.id, code.severity.word(), code.title)).collect()
 }
