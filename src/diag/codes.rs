@@ -116,7 +116,8 @@ mod tests {
 
     #[test]
     fn the_table_is_sorted_by_family_and_number() {
-        let (errors, warnings): (Vec<_>, Vec<_>) = ALL.iter().partition(|code| code.severity == Severity::Error);
+        let (errors, warnings): (Vec<&Code>, Vec<&Code>) =
+            ALL.iter().copied().partition(|code| code.severity == Severity::Error);
         assert!(errors.iter().all(|code| code.id.starts_with('E')));
         assert!(warnings.iter().all(|code| code.id.starts_with('W')));
         assert!(ALL.is_sorted_by_key(|code| (code.severity == Severity::Warning, code.id)));

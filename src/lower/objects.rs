@@ -7,7 +7,7 @@ use crate::diag::{Diagnostic, codes};
 use crate::ir::{Command, Cylinder, Handle, Sphere, Surface};
 use crate::lower::Lowering;
 use crate::source::Span;
-use crate::syntax::ast;
+use crate::syntax::ast::{self, Shape};
 
 /// The surface that the next object gets.
 #[derive(Clone, Copy, Debug, Default)]
@@ -39,22 +39,22 @@ impl Objects {
         self.first_surface.get_or_insert(span);
     }
 
-    /// Returns the surface of an object at `span`, if there is one to give it.
-    fn surface_for(&mut self, span: Span) -> Option<Handle<Surface>> {
-        match self.surface {
-            CurrentSurface::Known(surface) => return Some(surface),
-            CurrentSurface::Bad => {}
-            CurrentSurface::Unset => {
-                self.first_bare.get_or_insert(span);
+    /// Returns the surface of an object, if there is one to give it. A bad object has been reported and needs none.
+    fn surface_for(&mut self, object: &ast::Command<'_>) -> Option<Handle<Surface>> {
+        match (self.surface, object.shape) {
+            (CurrentSurface::Known(surface), _) => Some(surface),
+            (CurrentSurface::Bad, _) | (CurrentSurface::Unset, Shape::Bad(_)) => None,
+            (CurrentSurface::Unset, Shape::Whole(_)) => {
+                self.first_bare.get_or_insert(object.span);
                 self.n_bare += 1;
+                None
             }
         }
-        None
     }
 }
 
 pub(super) fn lower_sphere(lowering: &mut Lowering<'_>, command: &ast::Command<'_>, is_sound: bool) {
-    let surface = lowering.objects.surface_for(command.span);
+    let surface = lowering.objects.surface_for(command);
     let (true, Some(surface), &[x, y, z, radius]) = (is_sound, surface, command.numbers) else { return };
     let order = next_order(lowering);
     lowering.program.spheres.push(Sphere { center: DVec3::new(x, y, z), radius, surface, order });
@@ -67,7 +67,7 @@ pub(super) fn lower_sphere(lowering: &mut Lowering<'_>, command: &ast::Command<'
 }
 
 pub(super) fn lower_cylinder(lowering: &mut Lowering<'_>, command: &ast::Command<'_>, is_sound: bool) {
-    let surface = lowering.objects.surface_for(command.span);
+    let surface = lowering.objects.surface_for(command);
     let (true, Some(surface), &[radius, x, z, y_min, y_max]) = (is_sound, surface, command.numbers) else { return };
     let order = next_order(lowering);
     lowering.program.cylinders.push(Cylinder { radius, x, z, y_min, y_max, surface, order });

@@ -1,6 +1,8 @@
 //! What several suites share.
 #![allow(dead_code, reason = "each suite uses a part")]
 
+pub mod carets;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 

@@ -7,7 +7,7 @@ use crate::diag::{Diagnostic, codes};
 use crate::source::{Source, Span};
 use crate::syntax::parser::{grammar, numeral, path};
 use crate::syntax::spec::{ArgSpec, Arguments, CommandSpec};
-use crate::syntax::token::Token;
+use crate::syntax::token::{Token, TokenKind};
 
 /// A command whose arguments are wrong.
 pub(super) struct BadCommand<'l> {
@@ -48,7 +48,7 @@ impl Fault {
 
 /// Appends what is wrong with the arguments of a command, one diagnostic for each mistake.
 pub(super) fn check_arguments(command: &BadCommand<'_>, acc: &mut Vec<Diagnostic>) {
-    if let Some(diagnostic) = numeral::find_commas(command) {
+    if let Some(diagnostic) = numeral::find_commas(command).or_else(|| numeral::find_stray_words(command)) {
         return acc.push(diagnostic);
     }
     let n_before = acc.len();
@@ -97,7 +97,11 @@ impl BadCommand<'_> {
         let n_found = self.args.len();
         let found = if n_found == 0 { "none".to_owned() } else { n_found.to_string() };
         match self.spec.arguments {
-            Arguments::Numbers(args) => format!("`{name}` takes {}, found {found}", counted(args.len(), "number")),
+            Arguments::Numbers(args) => {
+                let all_numbers = self.args.iter().all(|arg| arg.kind == TokenKind::Number);
+                let words = if all_numbers { "" } else { " arguments" };
+                format!("`{name}` takes {}, found {found}{words}", counted(args.len(), "number"))
+            }
             Arguments::FileName(_) => format!("`{name}` takes 1 file name, found {found}"),
         }
     }
@@ -111,7 +115,11 @@ impl BadCommand<'_> {
 fn malformed(command: &BadCommand<'_>, index: usize) -> Diagnostic {
     let arg = &command.args[index];
     match command.spec.arguments {
-        Arguments::Numbers(args) => numeral::diagnose(command.source, arg.span, command.spec, &args[index]),
+        Arguments::Numbers(args) => {
+            let diagnostic = numeral::diagnose(command.source, arg.span, command.spec, &args[index]);
+            let is_short = command.args.len() < args.len();
+            if is_short { diagnostic.secondary(command.name, command.needs()) } else { diagnostic }
+        }
         Arguments::FileName(_) => path::unterminated_quote(command.source, arg.span),
     }
 }
@@ -121,13 +129,16 @@ fn missing(command: &BadCommand<'_>, index: usize) -> Diagnostic {
         return path::missing(command.source, command.name);
     };
     let missing = named(args[index..].iter().map(|arg| arg.name));
-    let place = match index {
-        0 => format!("behind `{}`", command.spec.name),
-        n => format!("after the {} number", ordinal(n)),
+    let help = match index {
+        _ if goes_on_in_next_line(command) => {
+            "join the next line to this one: a command and its arguments stand on one".to_owned()
+        }
+        0 => format!("add the missing {missing} behind `{}`", command.spec.name),
+        n => format!("add the missing {missing} after the {} number", ordinal(n)),
     };
     let mut diagnostic = Diagnostic::new(&codes::MISSING_ARGUMENT, command.name, command.count_message())
         .label(command.needs())
-        .help(format!("add the missing {missing} {place}"));
+        .help(help);
     if let [first, .., last] | [first @ last] = command.args {
         let given = listed(args[..index].iter().map(|arg| arg.name));
         diagnostic = diagnostic.secondary(first.span.to(last.span), format!("given: {given}"));
@@ -136,6 +147,15 @@ fn missing(command: &BadCommand<'_>, index: usize) -> Diagnostic {
         Some(next_name) => diagnostic.secondary(next_name, "another command begins here"),
         None => diagnostic,
     }
+}
+
+/// Tells whether the next line begins with a number, as if it were part of this one.
+fn goes_on_in_next_line(command: &BadCommand<'_>) -> bool {
+    let rest = &command.source.text()[command.name.end as usize..];
+    let mut lines = rest.lines();
+    let next_line = lines.nth(1).unwrap_or_default();
+    let first_word = next_line.split_ascii_whitespace().next().unwrap_or_default();
+    numeral::is_number(first_word)
 }
 
 fn surplus(command: &BadCommand<'_>, index: usize) -> Diagnostic {
@@ -161,8 +181,8 @@ fn help_for_surplus(command: &BadCommand<'_>, surplus: &[Token]) -> String {
     }
     let last_name = command.spec.numbers().last().map_or("", |arg: &ArgSpec| arg.name);
     match surplus {
-        [_] => format!("remove {}: `{last_name}` is the last", quoted(first)),
-        _ => format!("remove the {} numbers behind `{last_name}`", surplus.len()),
+        [_] => format!("remove {}: nothing follows `{last_name}`", quoted(first)),
+        _ => format!("remove the {} arguments behind `{last_name}`", surplus.len()),
     }
 }
 

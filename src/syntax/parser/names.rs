@@ -3,6 +3,7 @@
 use crate::diag::words::{listed, quoted};
 use crate::diag::{Diagnostic, codes};
 use crate::source::{Source, Span};
+use crate::syntax::parser::numeral::{SEPARATORS, numbers_between};
 use crate::syntax::spec::{self, Arguments, COMMANDS, CommandKind, CommandSpec};
 use crate::syntax::token::{Token, TokenKind};
 
@@ -71,20 +72,27 @@ fn guess(text: &str, source: &Source, args: &[Token]) -> Option<Guess> {
     if let Some(spec) = spec::find(lower.trim_matches(|c: char| !c.is_alphanumeric())) {
         return Some(Guess::new(spec, "a command is a word without punctuation"));
     }
-    glued(&lower, text).or_else(|| {
+    glued(&lower, text, source, args).or_else(|| {
         let fits = by_arguments(source, args);
         abbreviated(&lower, fits).or_else(|| misspelt(&lower, fits)).map(|spec| Guess::new(spec, "not a command"))
     })
 }
 
 /// Finds a command with its first argument glued to it: `sphere0`, `fov60`, `sphere(0`.
-fn glued(lower: &str, text: &str) -> Option<Guess> {
+fn glued(lower: &str, text: &str, source: &Source, args: &[Token]) -> Option<Guess> {
     let spec = COMMANDS.iter().find(|spec| lower.starts_with(spec.name))?;
     let rest = &text[spec.name.len()..];
     if rest.starts_with(char::is_alphabetic) {
         return None;
     }
-    let help = format!("put a blank between `{}` and {}", spec.name, quoted(rest));
+    let texts =
+        std::iter::once(rest.trim_start_matches(['=', ':'])).chain(args.iter().map(|arg| source.slice(arg.span)));
+    let help = match numbers_between(texts, &SEPARATORS) {
+        Some(numbers) if numbers.len() == spec.numbers().len() => {
+            format!("write {}", quoted(&format!("{} {}", spec.name, numbers.join(" "))))
+        }
+        _ => format!("put a blank between `{}` and {}", spec.name, quoted(rest)),
+    };
     Some(Guess { spec, label: "a command and its argument in one word".to_owned(), help })
 }
 

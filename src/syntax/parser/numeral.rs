@@ -6,10 +6,10 @@ use crate::source::{Source, Span};
 use crate::syntax::lexer::lex_line;
 use crate::syntax::parser::errors::BadCommand;
 use crate::syntax::spec::{ArgSpec, Arguments, CommandSpec};
-use crate::syntax::token::TokenKind;
+use crate::syntax::token::{Token, TokenKind};
 
 /// Characters that people put between or around numbers.
-const SEPARATORS: [char; 10] = [',', ';', '(', ')', '[', ']', '{', '}', '<', '>'];
+pub(super) const SEPARATORS: [char; 10] = [',', ';', '(', ')', '[', ']', '{', '}', '<', '>'];
 /// Characters that look like a minus sign.
 const FALSE_MINUSES: [char; 9] =
     ['\u{2010}', '\u{2011}', '\u{2012}', '\u{2013}', '\u{2014}', '\u{2015}', '\u{2212}', '\u{FE63}', '\u{FF0D}'];
@@ -76,19 +76,47 @@ pub(super) fn find_commas(command: &BadCommand<'_>) -> Option<Diagnostic> {
     let has_separator = |text: &str| text.contains(SEPARATORS);
     let mut with_separator = command.args.iter().filter(|arg| has_separator(command.text(arg)));
     let first = with_separator.next()?;
-    let pieces: Vec<_> = command.args.iter().flat_map(|arg| command.text(arg).split(SEPARATORS)).collect();
-    let pieces: Vec<_> = pieces.into_iter().filter(|piece| !piece.is_empty()).collect();
-    if pieces.len() != args.len() || !pieces.iter().all(|piece| is_number(piece)) {
+    let pieces = numbers_between(command.args.iter().map(|arg| command.text(arg)), &SEPARATORS)?;
+    if pieces.len() != args.len() {
         return None;
     }
-    let all_commas = command.args.iter().all(|arg| !command.text(arg).contains(&SEPARATORS[1..]));
-    let what = if all_commas { "commas" } else { "punctuation" };
+    let n_found = command.args.iter().map(|arg| command.text(arg).matches(SEPARATORS).count()).sum::<usize>();
+    let n_commas = command.args.iter().map(|arg| command.text(arg).matches(',').count()).sum::<usize>();
+    let what = match (n_found, n_commas) {
+        (1, 1) => "a comma",
+        _ if n_commas == n_found => "commas",
+        _ => "punctuation",
+    };
     let repair = format!("{} {}", command.spec.name, pieces.join(" "));
     let message = format!("{what} among the numbers of `{}`", command.spec.name);
     let diagnostic = Diagnostic::new(&codes::MALFORMED_NUMBER, first.span, message)
         .label("blanks alone separate numbers")
         .help(format!("write {}", quoted(&repair)));
     Some(with_separator.fold(diagnostic, |diagnostic, arg| diagnostic.secondary(arg.span, "here too")))
+}
+
+/// Reports words among the numbers when the line would be right without them, as in `sphere at 0 0 -4 radius 1`.
+pub(super) fn find_stray_words(command: &BadCommand<'_>) -> Option<Diagnostic> {
+    let Arguments::Numbers(args) = command.spec.arguments else { return None };
+    let (numbers, words): (Vec<&Token>, Vec<&Token>) = command.args.iter().partition(|arg| arg.kind == TokenKind::Number);
+    let is_inside = |word: &&Token| numbers.last().is_some_and(|last| word.span < last.span);
+    let has_digit = |word: &&Token| command.text(word).contains(|c: char| c.is_ascii_digit());
+    let first = words.first().filter(|_| numbers.len() == args.len() && words.iter().all(is_inside))?;
+    if words.iter().any(has_digit) {
+        return None;
+    }
+    let repair = numbers.iter().fold(command.spec.name.to_owned(), |line, arg| line + " " + command.text(arg));
+    let message = format!("{} among the numbers of `{}`", quoted(command.text(first)), command.spec.name);
+    let diagnostic = Diagnostic::new(&codes::MALFORMED_NUMBER, first.span, message)
+        .label("not a number")
+        .help(format!("write {}", quoted(&repair)));
+    Some(words[1..].iter().fold(diagnostic, |diagnostic, word| diagnostic.secondary(word.span, "here too")))
+}
+
+/// Returns the numbers that `separators` separate in `texts`, if there is nothing else in them.
+pub(super) fn numbers_between<'t>(texts: impl Iterator<Item = &'t str>, separators: &[char]) -> Option<Vec<&'t str>> {
+    let pieces: Vec<_> = texts.flat_map(|text| text.split(separators)).filter(|piece| !piece.is_empty()).collect();
+    pieces.iter().all(|piece| is_number(piece)).then_some(pieces)
 }
 
 /// Finds out what is wrong with `text`; none when it resembles no number.

@@ -37,9 +37,12 @@ pub(super) fn not_a_png(source: &Source, name: &Token) -> Diagnostic {
 fn help_for_ending(name: &str, kind: TokenKind) -> String {
     const OTHER_ENDINGS: [&str; 8] = ["jpg", "jpeg", "bmp", "gif", "ppm", "tga", "tiff", "tif"];
     const FALSE_QUOTES: [char; 9] = ['\'', '"', '`', '“', '”', '„', '‘', '’', '«'];
-    let bare = name.trim_matches(|c| FALSE_QUOTES.contains(&c)).trim_end_matches([';', ',', '.']);
+    let bare = name.trim_matches(|c| FALSE_QUOTES.contains(&c)).trim_end_matches([';', ',', '.', ' ', '\t']);
     if is_png(bare) {
-        return format!("write {}", quoted(bare));
+        return written(bare);
+    }
+    if bare.is_empty() || bare.ends_with('/') {
+        return "add the name of a file, such as `picture.png`".to_owned();
     }
     if let (TokenKind::Path, Some((before, comment))) = (kind, name.split_once('#'))
         && is_png(before)
@@ -49,9 +52,15 @@ fn help_for_ending(name: &str, kind: TokenKind) -> String {
     let (stem, ending) = name.rsplit_once('.').unwrap_or((name, ""));
     let lower = ending.to_ascii_lowercase();
     if lower == "png" || OTHER_ENDINGS.contains(&lower.as_str()) {
-        return format!("write {}", quoted(&format!("{stem}{ENDING}")));
+        return written(&format!("{stem}{ENDING}"));
     }
-    format!("write {}", quoted(&format!("{name}{ENDING}")))
+    written(&format!("{bare}{ENDING}"))
+}
+
+/// Returns the help to write this name, in quotes where they are needed.
+fn written(name: &str) -> String {
+    let needs_quotes = name.contains([' ', '\t']) || name.starts_with('#');
+    if needs_quotes { format!("write {}", quoted(&format!("\"{name}\""))) } else { format!("write {}", quoted(name)) }
 }
 
 /// Returns the diagnostic of a `write` with nothing behind it. `name` is the place of the word `write`.

@@ -110,11 +110,13 @@ fn foreign_blank(source: &Source, span: Span) -> Diagnostic {
         '\u{2028}' | '\u{2029}' => "Unicode line separator",
         _ => "Unicode blank",
     };
-    let message = format!("a {name} (U+{:04X}) separates nothing", u32::from(first));
-    Diagnostic::new(&codes::FOREIGN_CHARACTER, span, message)
-        .label("looks like a space, but is none")
-        .help("write a space in its place")
-        .note("only spaces and tabs separate words")
+    let message = format!("a {name} (U+{:04X}) where only a space or a tab may stand", u32::from(first));
+    let has_no_width = matches!(first, '\u{180E}' | '\u{200B}' | '\u{2060}' | '\u{FEFF}');
+    let (label, help) = match has_no_width {
+        true => ("does not show on a screen", "remove it"),
+        false => ("looks like a space, but is none", "write a space in its place"),
+    };
+    Diagnostic::new(&codes::FOREIGN_CHARACTER, span, message).label(label).help(help)
 }
 
 /// The carriage returns that no line feed follows.

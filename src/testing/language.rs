@@ -1,0 +1,130 @@
+//! Laws of the language wing, for any bytes whatever.
+//!
+//! Each function panics when its law is broken; property tests and fuzz targets feed them.
+
+use crate::compile;
+use crate::diag::render::{Color, render_human, render_json, render_short};
+use crate::diag::{Code, Diagnostic};
+use crate::source::Source;
+use crate::syntax::{lex, parse, parse_in_chunks};
+
+/// Makes a source of a few bytes.
+fn source(bytes: &[u8]) -> Source {
+    Source::from_bytes("test.cli", bytes.to_vec()).expect("a source below 4 GiB")
+}
+
+/// Checks that the tokens tile the source: side by side they give its bytes back, and none is empty.
+///
+/// # Panics
+/// When they do not.
+pub fn assert_tokens_tile(bytes: &[u8]) {
+    let source = source(bytes);
+    let mut end = 0;
+    for token in lex(&source) {
+        assert_eq!(token.span.start, end, "a gap or an overlap before {token:?}");
+        assert!(!token.span.is_empty(), "{token:?} is empty");
+        assert!(source.text().is_char_boundary(token.span.end as usize), "{token:?} cuts a character in two");
+        end = token.span.end;
+    }
+    assert_eq!(end as usize, bytes.len(), "the last token does not reach the end");
+    assert_eq!(*source.original_bytes(), *bytes, "the source does not keep its bytes");
+}
+
+/// Checks that parsing gives the same twice, and in chunks of any size.
+///
+/// # Panics
+/// When it does not.
+pub fn assert_parse_is_stable(bytes: &[u8]) {
+    let source = source(bytes);
+    let whole = parse(&source);
+    assert_eq!(parse(&source), whole, "parsed twice");
+    for chunk_bytes in [1, 7, 64] {
+        assert_eq!(parse_in_chunks(&source, chunk_bytes), whole, "parsed in chunks of {chunk_bytes}");
+    }
+    let mut n_commands = 0;
+    let mut end = 0;
+    for command in whole.file.commands() {
+        assert!(command.span.start >= end && !command.span.is_empty(), "{command:?} lies before {end}");
+        assert!(command.numbers.iter().all(|number| number.is_finite()), "{command:?} is not finite");
+        n_commands += 1;
+        end = command.span.end;
+    }
+    assert_eq!(whole.file.n_commands(), n_commands);
+}
+
+/// Checks that the scene compiles to diagnostics that are in order and lie in the text, that they can be rendered, and
+/// that a scene without errors makes a valid program.
+///
+/// # Panics
+/// When one of that is not so.
+pub fn assert_compiles_soundly(bytes: &[u8]) {
+    let source = source(bytes);
+    let compilation = compile(&source);
+    let found = &compilation.diagnostics;
+    assert!(found.is_sorted_by_key(|diagnostic| diagnostic.primary.span.start), "out of order: {found:#?}");
+    found.iter().for_each(|diagnostic| assert_is_sound(&source, diagnostic));
+    let mut out = Vec::new();
+    for color in [Color::Never, Color::Always] {
+        render_human(&source, found, color, &mut out).expect("written to memory");
+    }
+    render_short(&source, found, &mut out).expect("written to memory");
+    let mut json = Vec::new();
+    render_json(&source, found, &mut json).expect("written to memory");
+    serde_json::from_slice::<serde_json::Value>(&json).expect("one JSON document");
+    if !compilation.has_errors() {
+        let violations = crate::ir::validate(compilation.program).err();
+        assert_eq!(violations, None, "the language let pass what the door refuses");
+    }
+}
+
+fn assert_is_sound(source: &Source, diagnostic: &Diagnostic) {
+    for label in std::iter::once(&diagnostic.primary).chain(&diagnostic.secondary) {
+        assert!(source.text().get(label.span.range()).is_some(), "{label:?} lies outside the text");
+        assert!(!label.message.is_empty(), "a label says nothing: {diagnostic:#?}");
+    }
+    let message = &diagnostic.message;
+    assert!(!message.is_empty() && !message.ends_with('.'), "{message:?}");
+    assert!(message.chars().count() < 200, "a message is for people: {message:?}");
+}
+
+/// A page of `clisc explain`, taken apart.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Explanation {
+    /// The first line, without `#`.
+    pub title: String,
+    /// A scene that has what the code stands for.
+    pub failing: Vec<u8>,
+    /// The same scene without it.
+    pub repaired: Vec<u8>,
+    /// Whether it takes a run to find it.
+    pub needs_run: bool,
+}
+
+/// Takes the page of a code apart. In its scenes `\xNN` stands for a byte.
+///
+/// # Panics
+/// When the page has not the shape that every page has.
+#[must_use]
+pub fn explanation(code: &Code) -> Explanation {
+    let title = code.explanation.lines().next().and_then(|line| line.strip_prefix("# ")).expect("a title");
+    let fences: Vec<_> = code.explanation.split("```").collect();
+    let [_, failing, _, repaired, _] = fences[..] else { panic!("{}: two fenced scenes, no more", code.id) };
+    let (tag, _) = failing.split_once('\n').expect("a fenced scene");
+    let scene = |fenced: &str| {
+        let text = fenced.strip_prefix(tag).and_then(|text| text.strip_prefix('\n')).expect("both scenes have one tag");
+        unescape(text)
+    };
+    assert!(matches!(tag, "cli" | "cli run"), "{}: unknown tag {tag:?}", code.id);
+    Explanation { title: title.to_owned(), failing: scene(failing), repaired: scene(repaired), needs_run: tag != "cli" }
+}
+
+fn unescape(text: &str) -> Vec<u8> {
+    let mut pieces = text.split("\\x");
+    let mut bytes = pieces.next().unwrap_or_default().as_bytes().to_vec();
+    for piece in pieces {
+        let (digits, rest) = piece.split_at(2);
+        bytes.push(u8::from_str_radix(digits, 16).expect("two hexadecimal digits"));
+        bytes.extend_from_slice(rest.as_bytes());
+    }
+    bytes
+}

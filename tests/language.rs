@@ -1,0 +1,415 @@
+//! From text to diagnostics and dumps: the language wing as its users see it.
+
+mod support;
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use clisc::diag::codes;
+use clisc::diag::render::{Color, render_human, render_json, render_short};
+use clisc::source::Source;
+use clisc::syntax::{dump_ast, dump_ast_json, dump_tokens, dump_tokens_json, lex, parse};
+use clisc::testing::{Explanation, assert_compiles_soundly, assert_parse_is_stable, assert_tokens_tile, explanation};
+use clisc::{compile, ir};
+use proptest::prelude::*;
+
+use crate::support::carets;
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Returns the `.cli` files below a folder, sorted. Any other file is a failure, so that none is skipped in silence.
+fn scenes_below(folder: &Path) -> Vec<PathBuf> {
+    let mut scenes = Vec::new();
+    for entry in fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        if path.is_dir() {
+            scenes.extend(scenes_below(&path));
+        } else {
+            assert!(path.extension().is_some_and(|ending| ending == "cli"), "{} is no fixture", path.display());
+            scenes.push(path);
+        }
+    }
+    scenes.sort();
+    scenes
+}
+
+fn read(path: &Path) -> Source {
+    let name = path.strip_prefix(root()).expect("a path of the project").display().to_string();
+    Source::from_bytes(name, fs::read(path).expect("a readable scene")).expect("a small scene")
+}
+
+/// Returns the codes that a scene raises, in order.
+fn check(bytes: impl Into<Vec<u8>>) -> Vec<&'static str> {
+    let source = Source::from_bytes("test.cli", bytes.into()).expect("a small scene");
+    compile(&source).diagnostics.iter().map(|diagnostic| diagnostic.code.id).collect()
+}
+
+/// Returns what a scene raises, a line each: `line:column: code`.
+fn check_places(bytes: impl Into<Vec<u8>>) -> String {
+    let source = Source::from_bytes("test.cli", bytes.into()).expect("a small scene");
+    let places = compile(&source).diagnostics;
+    let places = places.iter().map(|diagnostic| {
+        let place = source.lines().position(source.text(), diagnostic.primary.span.start);
+        format!("{}:{}: {}", place.line, place.column, diagnostic.code.id)
+    });
+    places.collect::<Vec<_>>().join("\n")
+}
+
+/// A scene with nothing wrong, to put a line into.
+fn around(line: &str) -> String {
+    format!("fov 60\nlight 1 1 1 0 0 5\nsurface 0 .2 0 .4 .1 .1 0 0 0 1 0\n{line}\nsphere 0 0 -4 1\nwrite a.png\n")
+}
+
+#[test]
+fn fixtures_raise_what_their_comments_say() {
+    let bless = std::env::var_os("CLISC_BLESS").is_some();
+    let scenes = scenes_below(&root().join("tests/fixtures"));
+    assert!(scenes.len() > 20);
+    for path in scenes {
+        let source = read(&path);
+        let annotated = carets::annotate(&source, &compile(&source).diagnostics);
+        if bless {
+            fs::write(&path, &annotated).expect("a blessed fixture");
+        } else {
+            similar_asserts(&path, source.text(), &annotated);
+        }
+    }
+}
+
+/// Fails with the first line that differs.
+fn similar_asserts(path: &Path, expected: &str, actual: &str) {
+    let (mut expected, mut actual) = (expected.lines(), actual.lines());
+    for number in 1.. {
+        let (expected, actual) = (expected.next(), actual.next());
+        let place = format!("{}:{number} (CLISC_BLESS=1 rewrites it)", path.display());
+        assert_eq!(actual, expected, "{place}");
+        if actual.is_none() {
+            return;
+        }
+    }
+}
+
+#[test]
+fn twenty_mistakes_give_twenty_diagnostics_in_order() {
+    let source = read(&root().join("tests/fixtures/whole/twenty_mistakes.cli"));
+    let found = compile(&source).diagnostics;
+    assert_eq!(found.len(), 20, "{found:#?}");
+    assert!(found.is_sorted_by_key(|diagnostic| diagnostic.primary.span.start));
+    let lines: BTreeSet<_> = found.iter().map(|found| source.lines().line_of(found.primary.span.start)).collect();
+    assert_eq!(lines.len(), 20, "each on a line of its own");
+}
+
+#[test]
+fn each_page_of_explain_has_a_scene_that_fails_and_its_repair() {
+    for code in codes::ALL {
+        let Explanation { title, failing, repaired, needs_run } = explanation(code);
+        assert_eq!(title, format!("{}: {}", code.id, code.title));
+        let expected: &[&str] = if needs_run { &[] } else { &[code.id] };
+        assert_eq!(check(failing), expected, "the failing scene of {}", code.id);
+        assert_eq!(check(repaired), [""; 0], "the repaired scene of {}", code.id);
+    }
+}
+
+#[test]
+fn table_of_codes_and_folder_of_pages_agree() {
+    let pages = fs::read_dir(root().join("src/diag/explain")).expect("the folder of pages");
+    let pages: BTreeSet<_> =
+        pages.map(|page| page.expect("a page").file_name().into_string().expect("a name")).collect();
+    let codes: BTreeSet<_> = codes::ALL.iter().map(|code| format!("{}.md", code.id)).collect();
+    assert_eq!(pages, codes);
+}
+
+#[test]
+fn the_page_of_missing_arguments_shows_every_command() {
+    let page: String = codes::MISSING_ARGUMENT.explanation.split_whitespace().collect::<Vec<_>>().join(" ");
+    for command in clisc::syntax::spec::COMMANDS.iter().filter(|command| !command.numbers().is_empty()) {
+        assert!(page.contains(&command.usage()), "{}", command.usage());
+    }
+}
+
+#[test]
+fn examples_of_the_command_table_are_scenes() {
+    for command in &clisc::syntax::spec::COMMANDS {
+        let source = Source::new("test.cli", command.example);
+        let parse = parse(&source);
+        assert_eq!(parse.diagnostics, []);
+        assert_eq!(parse.file.counts()[command.kind as usize], 1);
+    }
+}
+
+#[test]
+fn invalid_scenes_raise_the_code_in_their_name() {
+    let mut unseen: BTreeSet<_> = codes::ALL.iter().map(|code| code.id).collect();
+    for path in scenes_below(&root().join("scenes/invalid")) {
+        let name = path.file_stem().and_then(|stem| stem.to_str()).expect("a name");
+        let id = name.split('-').next().expect("a code");
+        let code = codes::find(id).unwrap_or_else(|| panic!("{name} begins with no code"));
+        let expected: &[&str] = if explanation(code).needs_run { &[] } else { &[code.id] };
+        assert_eq!(check(fs::read(&path).expect("a readable scene")), expected, "{name}");
+        unseen.remove(code.id);
+    }
+    assert!(unseen.is_empty(), "no scene for {unseen:?}");
+}
+
+#[test]
+fn line_ends_and_marks_do_not_matter() {
+    let scene = around("# π");
+    assert_eq!(check(scene.clone()), [""; 0]);
+    assert_eq!(check(scene.replace('\n', "\r\n")), [""; 0]);
+    assert_eq!(check(scene.replacen('\n', "\r\n", 2)), [""; 0]);
+    assert_eq!(check(format!("\u{FEFF}{scene}")), [""; 0]);
+    assert_eq!(check(scene.trim_end()), [""; 0]);
+    assert_eq!(check(scene.replace(' ', "\t \t")), [""; 0]);
+    let of = |text: String| compile(&Source::new("test.cli", text)).program;
+    assert_eq!(of(format!("\u{FEFF}{}", scene.replace('\n', "\r\n"))), of(scene));
+}
+
+#[test]
+fn files_without_commands_lack_a_write_and_nothing_else() {
+    for text in ["", "\n", "\u{FEFF}", "# only a comment", "\r\n\r\n", "  \t ", "# π\n\n"] {
+        assert_eq!(check(text), ["W0301"], "{text:?}");
+    }
+}
+
+#[test]
+fn foreign_text_is_reported_at_its_place() {
+    // Bytes that are no UTF-8 count as one column each; the command beside the comment is read.
+    assert_eq!(
+        check_places(b"write a.png # f\xFCr\nfov 0\n".as_slice()),
+        "1:1: W0302\n1:16: E0101\n2:1: W0305\n2:5: E0401"
+    );
+    assert_eq!(
+        check_places([around("# \u{FC}").as_bytes(), b"# \xFC \xFC\n# \xFF"].concat()),
+        "7:3: E0101\n8:3: E0101"
+    );
+    // In a command they spoil that command alone.
+    assert_eq!(check_places([b"surf\xFCce 1\n".as_slice(), around("").as_bytes()].concat()), "1:5: E0101");
+    assert_eq!(check_places(around("sphere 0 0\0 -4 1")), "4:11: E0102");
+    assert_eq!(check_places(around("sp\0here 0 0 -4 1")), "4:3: E0102");
+    assert_eq!(check_places(around("# \0 \u{1B} \u{A0}")), "");
+    assert_eq!(check_places(around("sphere 0 0\u{A0}-4\u{A0}x")), "4:11: E0102\n4:15: E0205");
+    assert_eq!(check_places(around("\u{A0}\u{3000}")), "4:1: E0102");
+    assert_eq!(check_places(around("\u{1A}")), "4:1: E0102");
+}
+
+#[test]
+fn carriage_returns_alone_are_one_mistake() {
+    assert_eq!(check_places(around("# a").replace('\n', "\r")), "1:7: E0102");
+    assert_eq!(check_places(around("# a\rb")), "4:4: E0102\n4:5: E0201");
+    assert_eq!(check_places(around("fov 60").replace('\n', "\r\r\n")), "1:7: E0102");
+}
+
+#[test]
+fn utf16_is_one_mistake() {
+    let text = around("sphere 0 0 -4 1");
+    let little: Vec<u8> = text.encode_utf16().flat_map(u16::to_le_bytes).collect();
+    let big: Vec<u8> = text.encode_utf16().flat_map(u16::to_be_bytes).collect();
+    for bytes in [[b"\xFF\xFE".as_slice(), &little].concat(), [b"\xFE\xFF".as_slice(), &big].concat(), little, big] {
+        assert_eq!(check(bytes), ["E0101"]);
+    }
+}
+
+#[test]
+fn one_mistake_is_not_reported_twice() {
+    for (bad, codes) in [
+        // A bad command counts as the one it was meant to be.
+        ("fov 60 x\nsurfcae 0 .2 0 .4 .1 .1 0 0 0 1 0\nsphere 0 0 -4 1\nwrit a.png", vec!["E0204", "E0201", "E0201"]),
+        ("fvo 60\nsurface 1 1\nsphere 0 0 -4 1\nwrite a.jpg", vec!["E0201", "E0203", "E0209"]),
+        ("fov x\n0 .2 0 .4 .1 .1 0 0 0 1 0\nsphere 0 0 -4 1\nsave a.png", vec!["E0205", "E0202", "E0201"]),
+        ("fov 0\nwrite a.png", vec!["E0401"]),
+        ("fov 60\nsurface 0 .2 0 .4 .1 .1 0 0 0 -1 0\nsphere 0 0 -4 1\nwrite a.png", vec!["E0404"]),
+        // Objects without a surface are mended by one surface.
+        ("fov 60\nsphere 0 0 -4 1\nsphere 0 0 -4 1\nwrite a.png", vec!["E0301"]),
+        // Two mistakes on one line are two.
+        ("fov 60\nsurface 1 1 1 1 1 1 1 1 1 1 1\ncylinder -1 0 0 2 1\nwrite a.png", vec!["E0402", "E0403"]),
+        ("fov 60\nsurface 1 1 1 1 1 1 1 1 1 1 1\nsphere x y 0 1\nwrite a.png", vec!["E0205", "E0205"]),
+        ("fov 60\nsurface 1 1 1 1 1 1 1 1 1 1 1\nsphere x 0 0 1 1 1\nwrite a.png", vec!["E0205", "E0204"]),
+        ("fov 60\nsurface 1 1 1 1 1 1 1 1 1 1 1\nsphere x 0 0\nwrite a.png", vec!["E0205"]),
+        // So are a mistake in shape and one in value, on two lines.
+        ("fov 60\nlight 9 9 9 0 0\nlight 9 9 9 0 0 1\nwrite a.png", vec!["E0203", "W0303"]),
+    ] {
+        assert_eq!(check(bad), codes, "{bad}");
+    }
+}
+
+#[test]
+fn long_lines_are_cut_and_quick() {
+    let long = format!("{}sphere 0 0 -4 x{}", " ".repeat(5_000_000), " 1".repeat(2_500_000));
+    let source = Source::new("long.cli", around(&long));
+    let found = compile(&source).diagnostics;
+    let mut drawing = Vec::new();
+    render_human(&source, &found, Color::Never, &mut drawing).expect("written to memory");
+    let drawing = String::from_utf8(drawing).expect("text");
+    assert!(drawing.contains("4:5000015") && drawing.contains("`x` is not a number"), "{drawing}");
+    assert!(drawing.lines().all(|line| line.chars().count() < 300), "a line of ten megabytes is drawn");
+    for unit in ["x", "1 ", "#", "\"", "\u{A0}", "\0", "sphere "] {
+        let text = around(&unit.repeat(10_000_000 / unit.len()));
+        let source = Source::new("long.cli", text);
+        let mut drawing = Vec::new();
+        render_human(&source, &compile(&source).diagnostics, Color::Never, &mut drawing).expect("written to memory");
+        assert!(drawing.len() < 10_000, "{unit:?}");
+    }
+}
+
+#[test]
+fn numbers_are_the_nearest_ones() {
+    for text in ["0.1", "+.5", "1.", "1e-3", "123456789012345678901234567890", "4.9e-324", "1e-999", "-0"] {
+        let source = Source::new("test.cli", around(&format!("sphere {text} 0 -4 1")));
+        let program = compile(&source).program;
+        let expected: f64 = text.parse().expect("a number");
+        assert_eq!(program.spheres.as_slice()[0].center.x.to_bits(), expected.to_bits(), "{text}");
+    }
+}
+
+#[test]
+fn runs_of_one_kind_are_one_step() {
+    let text = "fov 60\nlight 1 1 1 0 0 5\nlight 1 1 1 0 1 5\nsurface 1 1 1 1 1 1 1 1 1 1 1\nsphere 0 0 -4 1\n\
+        surface 1 1 1 1 1 1 1 1 1 1 0\nsphere 1 0 -4 1\ncylinder 1 0 0 0 1\nsphere 2 0 -4 1\nwrite a.png\nwrite b.png\n";
+    let source = Source::new("test.cli", text);
+    let compilation = compile(&source);
+    assert_eq!(compilation.diagnostics, []);
+    let program = ir::validate(compilation.program).expect("a sound program");
+    let mut listing = Vec::new();
+    ir::dump_commands(&source, &program, &mut listing).expect("written to memory");
+    insta::assert_snapshot!("runs_of_one_kind", String::from_utf8(listing).expect("text"));
+    assert_eq!(program.origins.commands.len(), program.commands.len());
+    assert_eq!(source.slice(*program.origins.commands.last().expect("an origin")), "b.png");
+}
+
+/// The scene of the snapshots: a little of everything.
+const SCENE: &str = "\u{FEFF}# two balls and a pillar, π\r\nfov 60\nbackground .2 .3 .5\nlight 1 1 1  0 0 5   # key\n\
+    light 0.1 0.1 0.1\t5 5 0\nsurface 0 0.2 0   0.4 0.1 0.1   0 0 0   1  0\nsphere 0 0 -4 1\n\
+    surface 0 0 0  0.4 0.1 0.1  .5 .5 .5  1e1  0.2\nsphere 2 -0 -4 1\nsphere 0 0 -4 1\ncylinder 1 0 -7 -1 1\n\
+    write \"out/b 1.png\"\nlight 0.1 0.1 0.1  -5 5 0\nwrite 7#b.png # again";
+
+fn dumped(write: impl FnOnce(&mut dyn std::io::Write) -> std::io::Result<()>) -> String {
+    let mut out = Vec::new();
+    write(&mut out).expect("written to memory");
+    String::from_utf8(out).expect("text")
+}
+
+#[test]
+fn dumps_keep_their_shape() {
+    let source = Source::new("scene.cli", SCENE);
+    let compilation = compile(&source);
+    assert_eq!(compilation.diagnostics, []);
+    let program = ir::validate(compilation.program).expect("a sound program");
+    let (tokens, file) = (lex(&source), parse(&source).file);
+    insta::assert_snapshot!("tokens", dumped(|out| dump_tokens(&source, &tokens, out)));
+    insta::assert_snapshot!("tokens_json", dumped(|out| dump_tokens_json(&source, &tokens[..6], out)));
+    insta::assert_snapshot!("ast", dumped(|out| dump_ast(&source, &file, out)));
+    insta::assert_snapshot!("ast_json", dumped(|out| dump_ast_json(&source, &file, out)));
+    insta::assert_snapshot!("ir", dumped(|out| ir::dump_arenas(&source, &program, out)));
+    insta::assert_snapshot!("ir_json", dumped(|out| ir::dump_arenas_json(&source, &program, out)));
+    insta::assert_snapshot!("commands", dumped(|out| ir::dump_commands(&source, &program, out)));
+    insta::assert_snapshot!("commands_json", dumped(|out| ir::dump_commands_json(&source, &program, out)));
+}
+
+/// Scenes with one mistake whose drawing is kept: a tab, a wide character, a byte-order mark, CRLF, two places, none.
+const DRAWN: &[&str] = &[
+    "\u{FEFF}fov\t0\r\nwrite a.png\r\n",
+    "fov 60\n# 漢字 π\nsphere\t1 0 0 # 漢\nsurfac 1\nwrite a.png",
+    "fov 60\nwrite a.png\n\n\nfov 70\nwrite ./a.png",
+    "# \u{2028} and \u{0C} end no line\nfov 60 \u{A0}\n",
+    "",
+];
+
+#[test]
+fn drawings_keep_their_shape() {
+    let drawings: Vec<_> = DRAWN
+        .iter()
+        .map(|text| {
+            let source = Source::new("scene.cli", *text);
+            let found = compile(&source).diagnostics;
+            dumped(|out| render_human(&source, &found, Color::Never, out))
+        })
+        .collect();
+    assert!(drawings.iter().all(|drawing| !drawing.contains('\u{1B}')));
+    assert!(drawings.iter().flat_map(|drawing| drawing.lines()).all(|line| line == line.trim_end()));
+    insta::assert_snapshot!("drawings", drawings.join("=====\n"));
+    let source = Source::new("scene.cli", "fov 0\nwrite a.png");
+    let found = compile(&source).diagnostics;
+    insta::assert_snapshot!("short", dumped(|out| render_short(&source, &found, out)));
+    insta::assert_snapshot!("json", dumped(|out| render_json(&source, &found, out)));
+    let colored = dumped(|out| render_human(&source, &found, Color::Always, out));
+    assert!(colored.starts_with("\u{1B}[31merror[E0401]\u{1B}[0m: "), "{colored:?}");
+}
+
+#[test]
+fn many_diagnostics_are_all_told() {
+    let source = Source::new("scene.cli", "sphere 1\n".repeat(20_000));
+    let found = compile(&source).diagnostics;
+    assert_eq!(found.len(), 20_001, "a `write` is missing too");
+    let drawing = dumped(|out| render_human(&source, &found, Color::Never, out));
+    assert_eq!(drawing.matches("error[E0203]").count(), 20_000);
+}
+
+/// Lines of which some are scenes and some nearly so.
+fn any_scene() -> impl Strategy<Value = String> {
+    let word = prop::sample::select(vec![
+        "fov",
+        "background",
+        "light",
+        "surface",
+        "sphere",
+        "cylinder",
+        "write",
+        "sphre",
+        "1",
+        "-0.5",
+        "1e999",
+        "0,5",
+        ".",
+        "-",
+        "a.png",
+        "\"a b.png\"",
+        "\"",
+        "#",
+        " ",
+        "\t",
+        "\r",
+        "\n",
+        "\r\n",
+        "\u{A0}",
+        "\0",
+        "\u{FEFF}",
+        "π",
+        "(",
+        ")",
+        "1,2,3,4",
+    ]);
+    prop::collection::vec((word, prop::sample::select(vec!["", " ", " ", " ", "\n"])), 0..60)
+        .prop_map(|pieces| pieces.into_iter().flat_map(|(word, blank)| [word, blank]).collect())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 512, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn any_bytes_keep_the_laws(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
+        assert_tokens_tile(&bytes);
+        assert_parse_is_stable(&bytes);
+        assert_compiles_soundly(&bytes);
+    }
+
+    #[test]
+    fn any_near_scene_keeps_the_laws(text in any_scene()) {
+        assert_tokens_tile(text.as_bytes());
+        assert_parse_is_stable(text.as_bytes());
+        assert_compiles_soundly(text.as_bytes());
+    }
+
+    #[test]
+    fn an_error_never_outlives_its_line(text in any_scene()) {
+        let line = text.replace(['\n', '\r'], " ");
+        let scene = around(&line);
+        let source = Source::new("test.cli", scene);
+        for found in compile(&source).diagnostics {
+            let place = source.lines().line_of(found.primary.span.start);
+            prop_assert!(place == 3 || !found.is_error(), "{found:#?}");
+        }
+    }
+}
