@@ -115,6 +115,15 @@ impl Values<'_> {
         format!("{} {}", self.spec.name, texts.join(" "))
     }
 
+    /// Tells whether the numbers look like channels from 0 to 255.
+    fn is_in_bytes(&self, outside: &[usize]) -> bool {
+        // A light of 2 or 10 is meant as one; above this a scale to 255 is likelier.
+        const LEAST: f64 = 16.0;
+        let numbers = || outside.iter().map(|&index| self.numbers[index]);
+        numbers().all(|number| number > 0.0 && number <= 255.0 && number.fract() == 0.0)
+            && numbers().any(|n| n >= LEAST)
+    }
+
     /// Reports the colours and coefficients outside 0…1, all of a command at once.
     fn check_unit_ranges(&self, acc: &mut Vec<Diagnostic>) {
         let args = self.spec.numbers();
@@ -135,6 +144,11 @@ impl Values<'_> {
         let label = |diagnostic: Diagnostic, &index: &usize| {
             diagnostic.secondary(self.spans[index], format!("`{}`", args[index].name))
         };
-        acc.push(others.iter().fold(diagnostic, label));
+        let diagnostic = others.iter().fold(diagnostic, label);
+        acc.push(if self.is_in_bytes(&outside) {
+            diagnostic.help("if the colour is on a scale to 255, divide it by 255")
+        } else {
+            diagnostic
+        });
     }
 }

@@ -143,10 +143,21 @@ fn missing(command: &BadCommand<'_>, index: usize) -> Diagnostic {
         let given = listed(args[..index].iter().map(|arg| arg.name));
         diagnostic = diagnostic.secondary(first.span.to(last.span), format!("given: {given}"));
     }
-    match command.next_name {
-        Some(next_name) => diagnostic.secondary(next_name, "another command begins here"),
-        None => diagnostic,
+    match (command.next_name, glued_comment(command)) {
+        (Some(next_name), _) => diagnostic.secondary(next_name, "another command begins here"),
+        (None, Some(comment)) => diagnostic.secondary(comment, "`#` begins a comment"),
+        (None, None) => diagnostic,
     }
+}
+
+/// Returns the place of a comment whose text begins directly behind its `#`: perhaps no comment was meant.
+fn glued_comment(command: &BadCommand<'_>) -> Option<Span> {
+    let end = command.args.last().map_or(command.name, |last| last.span).end;
+    let rest = command.source.text()[end as usize..].lines().next()?;
+    let comment = &rest[rest.find('#')?..];
+    let start = end + (rest.len() - comment.len()) as u32;
+    let is_glued = comment[1..].starts_with(char::is_alphanumeric);
+    is_glued.then(|| Span::new(start, start + comment.trim_end().len() as u32))
 }
 
 /// Tells whether the next line begins with a number, as if it were part of this one.

@@ -98,7 +98,8 @@ pub(super) fn find_commas(command: &BadCommand<'_>) -> Option<Diagnostic> {
 /// Reports words among the numbers when the line would be right without them, as in `sphere at 0 0 -4 radius 1`.
 pub(super) fn find_stray_words(command: &BadCommand<'_>) -> Option<Diagnostic> {
     let Arguments::Numbers(args) = command.spec.arguments else { return None };
-    let (numbers, words): (Vec<&Token>, Vec<&Token>) = command.args.iter().partition(|arg| arg.kind == TokenKind::Number);
+    let (numbers, words): (Vec<&Token>, Vec<&Token>) =
+        command.args.iter().partition(|arg| arg.kind == TokenKind::Number);
     let is_inside = |word: &&Token| numbers.last().is_some_and(|last| word.span < last.span);
     let has_digit = |word: &&Token| command.text(word).contains(|c: char| c.is_ascii_digit());
     let first = words.first().filter(|_| numbers.len() == args.len() && words.iter().all(is_inside))?;
@@ -193,6 +194,9 @@ fn comma(text: &str) -> Option<Finding> {
     if bare != text {
         return Finding::repaired("blanks alone separate numbers", bare);
     }
+    if text.contains('.') {
+        return Finding::repaired("digits stand without separators", &text.replace(',', ""));
+    }
     match text.matches(',').count() {
         1 => Finding::repaired("the decimal sign is a point", &text.replace(',', ".")),
         0 => None,
@@ -231,6 +235,9 @@ fn other_base(text: &str) -> Option<Finding> {
 }
 
 fn bad_exponent(text: &str) -> Option<Finding> {
+    if text.contains(['d', 'D']) {
+        return Finding::repaired("an exponent begins with `e`", &text.replace(['d', 'D'], "e"));
+    }
     let (mantissa, exponent) = text.split_once(['e', 'E'])?;
     if !is_number(mantissa) {
         return None;
@@ -279,10 +286,16 @@ fn glued(text: &str) -> Option<Finding> {
         let help = format!("put a blank between {} and {}", quoted(number), quoted(rest));
         return Some(Finding::malformed("it is two numbers in one", help));
     }
+    if rest.starts_with(['*', '/', '^', '+', '-']) {
+        return Some(Finding::malformed("a scene does not calculate", "write the result as one number"));
+    }
     Some(Finding::malformed(format!("{} follows the number", quoted(rest)), format!("write {}", quoted(number))))
 }
 
 fn no_digits(text: &str) -> Option<Finding> {
+    if text == "\\" {
+        return Some(Finding::malformed("a command does not go on in the next line", "join the next line to this one"));
+    }
     let is_mark =
         text.chars().all(|character| matches!(character, '+' | '-' | '.') || FALSE_MINUSES.contains(&character));
     is_mark.then(|| Finding::malformed("it has no digits", "write a number, such as `1`, `-0.25` or `1e-3`"))
@@ -322,6 +335,10 @@ mod tests {
             ("60°", "`°` follows the number", "write `60`"),
             ("0-4", "two numbers in one", "between `0` and `-4`"),
             ("-", "no digits", "such as"),
+            ("1,000.5", "without separators", "write `1000.5`"),
+            ("1d3", "begins with `e`", "write `1e3`"),
+            ("2*3", "does not calculate", "the result"),
+            ("\\", "does not go on", "join the next line"),
         ] {
             let finding = find(text).unwrap_or_else(|| panic!("{text}"));
             assert!(finding.why.contains(why), "{text}: {}", finding.why);

@@ -8,6 +8,8 @@ use crate::syntax::token::{Token, TokenKind};
 
 /// How the name of an image ends.
 const ENDING: &str = ".png";
+/// What people put around a name, `"` included where it is not a pair.
+const FALSE_QUOTES: [char; 9] = ['\'', '"', '`', '“', '”', '„', '‘', '’', '«'];
 
 /// Returns the name that the token below `span` stands for: without its quotes, if it has them.
 pub(super) fn unquoted(source: &Source, span: Span) -> &str {
@@ -36,7 +38,6 @@ pub(super) fn not_a_png(source: &Source, name: &Token) -> Diagnostic {
 
 fn help_for_ending(name: &str, kind: TokenKind) -> String {
     const OTHER_ENDINGS: [&str; 8] = ["jpg", "jpeg", "bmp", "gif", "ppm", "tga", "tiff", "tif"];
-    const FALSE_QUOTES: [char; 9] = ['\'', '"', '`', '“', '”', '„', '‘', '’', '«'];
     let bare = name.trim_matches(|c| FALSE_QUOTES.contains(&c)).trim_end_matches([';', ',', '.', ' ', '\t']);
     if is_png(bare) {
         return written(bare);
@@ -90,7 +91,7 @@ pub(super) fn unterminated_quote(source: &Source, span: Span) -> Diagnostic {
 
 /// Says what to do about words behind a file name. `surplus` is their place.
 pub(super) fn help_for_surplus(command: &BadCommand<'_>, surplus: Span) -> String {
-    let whole = command.source.slice(command.args[0].span.to(surplus)).trim_matches(['\'', '"']);
+    let whole = command.source.slice(command.args[0].span.to(surplus)).trim_matches(FALSE_QUOTES);
     let first = unquoted(command.source, command.args[0].span);
     if !is_png(first) && is_png(whole) && !whole.contains('"') {
         return format!("put a name with blanks in double quotes: {}", quoted(&format!("\"{whole}\"")));

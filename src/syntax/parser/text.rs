@@ -90,11 +90,11 @@ fn with_places(diagnostic: Diagnostic, places: impl Iterator<Item = Span>) -> Di
 fn control(source: &Source, span: Span) -> Diagnostic {
     let first = source.slice(span).chars().next().unwrap_or('\0');
     let name = match first {
-        '\0' => "NUL byte".to_owned(),
-        '\u{1A}' => "control character U+001A (end of file in DOS)".to_owned(),
-        _ => format!("control character U+{:04X}", u32::from(first)),
+        '\0' => "a NUL byte".to_owned(),
+        '\u{1A}' => "the control character U+001A (end of file in DOS)".to_owned(),
+        _ => format!("the control character U+{:04X}", u32::from(first)),
     };
-    Diagnostic::new(&codes::FOREIGN_CHARACTER, span, format!("a {name} cannot stand in a command"))
+    Diagnostic::new(&codes::FOREIGN_CHARACTER, span, format!("{name} cannot stand in a command"))
         .label("does not show on a screen")
         .help("remove it")
 }

@@ -1,0 +1,167 @@
+//! `clisc check`, `ir` and `explain` as one calls them: exit codes, streams, files.
+
+mod support;
+
+use crate::support::{Folder, scene};
+
+const BAD: &str = "fov 0\nwrite a.png\n";
+
+#[test]
+fn a_sound_scene_is_fine() {
+    let call = Folder::with_scene(&scene("a.png")).clisc(&["check", "a.cli"]);
+    assert_eq!((call.code, call.stdout.as_str()), (Some(0), ""));
+    assert_eq!(call.stderr, "1 scene checked: no error, no warning\n");
+}
+
+#[test]
+fn a_scene_with_errors_is_1_and_told_on_standard_output() {
+    let call = Folder::with_scene(BAD).clisc(&["check", "a.cli"]);
+    assert_eq!(call.code, Some(1));
+    assert!(call.stdout.contains("error[E0401]: a field of view of 0 degrees is out of range"), "{}", call.stdout);
+    assert!(call.stdout.contains("a.cli:1:5") && !call.stdout.contains('\u{1B}'), "{}", call.stdout);
+    assert_eq!(call.stderr, "1 scene checked: 1 error, no warning\n");
+}
+
+#[test]
+fn the_short_form_is_a_line_each() {
+    let call = Folder::with_scene(BAD).clisc(&["check", "a.cli", "--format", "short"]);
+    assert_eq!(call.stdout, "a.cli:1:5: error[E0401]: a field of view of 0 degrees is out of range\n");
+}
+
+#[test]
+fn json_is_one_document_for_all_scenes() {
+    let folder = Folder::with_scene(BAD);
+    folder.put("b.cli", "# π\nwrite a.png");
+    let call = folder.clisc(&["check", "--format", "json", "a.cli", "missing.cli", "b.cli"]);
+    assert_eq!(call.code, Some(2));
+    let document: serde_json::Value = serde_json::from_str(&call.stdout).expect("one document");
+    assert_eq!((&document["version"], &document["errors"], &document["warnings"]), (&1.into(), &1.into(), &1.into()));
+    let found = document["diagnostics"].as_array().expect("a list");
+    assert_eq!(found.len(), 2);
+    assert_eq!((&found[0]["path"], &found[0]["code"]), (&"a.cli".into(), &"E0401".into()));
+    assert_eq!(found[0]["primary"]["bytes"], serde_json::json!({ "start": 4, "end": 5 }));
+    assert_eq!(found[0]["primary"]["end"], serde_json::json!({ "line": 1, "column": 6 }));
+    assert_eq!(found[1]["primary"]["bytes"]["start"], 5, "bytes, not characters");
+    assert!(call.stderr.contains("cannot read `missing.cli`"), "{}", call.stderr);
+    let empty = Folder::with_scene(&scene("a.png")).clisc(&["check", "--format", "json", "a.cli"]);
+    let document: serde_json::Value = serde_json::from_str(&empty.stdout).expect("one document");
+    assert_eq!(document["diagnostics"], serde_json::json!([]));
+}
+
+#[test]
+fn warnings_are_fine_until_they_are_denied() {
+    let folder = Folder::with_scene(&scene("a.png").replace("fov 60\n", ""));
+    let call = folder.clisc(&["check", "a.cli"]);
+    assert_eq!(call.code, Some(0));
+    assert!(call.stdout.contains("warning[W0302]"), "{}", call.stdout);
+    assert_eq!(folder.clisc(&["check", "a.cli", "--deny-warnings"]).code, Some(1));
+}
+
+#[test]
+fn a_folder_means_every_scene_below_it() {
+    let folder = Folder::new();
+    folder.put("b.cli", "x");
+    folder.put("c/a.cli", "x");
+    folder.put("a.cli", "x");
+    folder.put("c/notes.txt", "x");
+    let call = folder.clisc(&["check", ".", "--format", "short"]);
+    let paths: Vec<_> =
+        call.stdout.lines().filter(|line| line.contains("E0201")).map(|line| line.split(':').next()).collect();
+    assert_eq!(paths, [Some("./a.cli"), Some("./b.cli"), Some("./c/a.cli")]);
+    assert!(call.stderr.ends_with("3 scenes checked: 3 errors, 3 warnings\n"), "{}", call.stderr);
+}
+
+#[test]
+fn a_folder_without_scenes_is_a_slip() {
+    let folder = Folder::new();
+    folder.put("empty/notes.txt", "x");
+    let call = folder.clisc(&["check", "empty"]);
+    assert_eq!(call.code, Some(2));
+    assert!(call.stderr.contains("there is no .cli file below `empty`"), "{}", call.stderr);
+}
+
+#[test]
+fn standard_input_is_a_scene() {
+    let folder = Folder::new();
+    let call = folder.command(&["check", "-", "--format", "short"]).write_stdin(BAD).output().expect("a call");
+    assert_eq!(call.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&call.stdout).starts_with("<stdin>:1:5: error[E0401]"));
+}
+
+#[test]
+fn what_cannot_be_read_is_2_and_the_others_are_checked() {
+    let folder = Folder::with_scene(BAD);
+    let call = folder.clisc(&["check", "missing.cli", "a.cli", "--format", "short"]);
+    assert_eq!(call.code, Some(2));
+    assert!(call.stderr.contains("cannot read `missing.cli`: No such file"), "{}", call.stderr);
+    assert!(call.stdout.contains("a.cli:1:5"), "{}", call.stdout);
+}
+
+#[test]
+fn every_stage_can_be_shown() {
+    let folder = Folder::with_scene(&scene("a.png"));
+    for (stage, words) in [
+        ("tokens", "6:7  path           \"a.png\""),
+        ("ast", "5:1  sphere x=0.0 y=0.0 z=-4.0 radius=1.0"),
+        ("ir", "#0  center 0.0 0.0 -4.0  radius 1.0  surface #0  order 0  equation 0  ; line 5"),
+        ("commands", "   4  write       \"a.png\""),
+    ] {
+        let call = folder.clisc(&["ir", "a.cli", "--emit", stage]);
+        assert_eq!((call.code, call.stderr.as_str()), (Some(0), ""));
+        assert!(call.stdout.contains(words), "{stage}: {}", call.stdout);
+        let call = folder.clisc(&["ir", "a.cli", "--emit", stage, "--format", "json"]);
+        let document: serde_json::Value = serde_json::from_str(&call.stdout).expect("one document");
+        assert_eq!(document["version"], 1, "{stage}");
+    }
+}
+
+#[test]
+fn a_bad_scene_has_tokens_and_a_tree_but_no_program() {
+    let folder = Folder::with_scene(BAD);
+    for (stage, is_shown) in [("tokens", true), ("ast", true), ("ir", false), ("commands", false)] {
+        let call = folder.clisc(&["ir", "a.cli", "--emit", stage]);
+        assert_eq!(call.code, Some(1));
+        assert_eq!(!call.stdout.is_empty(), is_shown, "{stage}: {}", call.stdout);
+        assert!(call.stderr.contains("error[E0401]"), "{}", call.stderr);
+    }
+}
+
+#[test]
+fn codes_are_explained() {
+    let folder = Folder::new();
+    let list = folder.clisc(&["explain"]);
+    assert_eq!(list.code, Some(0));
+    assert!(list.stdout.lines().any(|line| line == "E0203  error    missing argument"), "{}", list.stdout);
+    assert!(list.stdout.lines().any(|line| line == "W0301  warning  no `write`"), "{}", list.stdout);
+    let page = folder.clisc(&["explain", "e0203"]);
+    assert!(page.stdout.starts_with("# E0203: missing argument\n"), "{}", page.stdout);
+    let unknown = folder.clisc(&["explain", "E0215"]);
+    assert_eq!((unknown.code, unknown.stdout.as_str()), (Some(2), ""));
+    assert!(unknown.stderr.contains("there is no code `E0215`; did you mean E0205?"), "{}", unknown.stderr);
+}
+
+/// A reader that has seen enough ends nothing: as `clisc ir a.cli --emit tokens | head -1` does.
+#[test]
+#[cfg(unix)]
+fn a_closed_pipe_is_no_fault() {
+    use std::io::{BufRead, BufReader, Read};
+    use std::process::{Command, Stdio};
+
+    let folder = Folder::with_scene(&"sphere x\n".repeat(20_000));
+    folder.put("b.cli", "# a comment\n".repeat(20_000) + &scene("b.png"));
+    for (args, code) in [
+        (&["check", "a.cli"][..], 1),
+        (&["check", "a.cli", "--format", "json"], 1),
+        (&["ir", "b.cli", "--emit", "tokens"], 0),
+    ] {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_clisc"));
+        command.current_dir(folder.at(".")).args(args).stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut child = command.spawn().expect("a command that starts");
+        let mut line = String::new();
+        BufReader::new(child.stdout.take().expect("a pipe")).read_line(&mut line).expect("a line");
+        let mut stderr = String::new();
+        child.stderr.take().expect("a pipe").read_to_string(&mut stderr).expect("text");
+        assert_eq!(child.wait().expect("an end").code(), Some(code), "{args:?}");
+        assert!(!stderr.contains("panicked") && !stderr.contains("cannot write"), "{stderr}");
+    }
+}
