@@ -159,10 +159,10 @@ fn whole(program: &ir::Valid) -> SceneView<'_> {
 
 #[test]
 fn the_oracle_does_not_depend_on_its_precision() {
-    for (title, sketch, size) in cases(FAMILIES).step_by(4) {
+    for (title, sketch, size) in cases(FAMILIES).step_by(4).chain(cases(FINEST).step_by(2)) {
         let made = sketch.make();
         let settings = sized(size);
-        let few = Oracle::with_ladder(made.view(), &settings, &[192, 384, 768, 1536, 3072]);
+        let few = Oracle::with_ladder(made.view(), &settings, &[192, 576, 1152, 2304]);
         let many = Oracle::new(made.view(), &settings);
         let width = settings.size.width();
         for (i, pixel) in (0..).zip(many.image()).step_by(7) {

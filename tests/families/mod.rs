@@ -42,6 +42,7 @@ pub const FAMILIES: &[Family] = &[
     Family { name: "balls on a ball of 1e8", sketch: |random| resting(random, 1e8) },
     Family { name: "eye in a mirrored sphere", sketch: inside_sphere },
     Family { name: "eye in a mirrored cylinder", sketch: inside_cylinder },
+    Family { name: "mirrored balls in a mirrored room", sketch: mirrored_room },
     Family { name: "hall of mirrors", sketch: hall_of_mirrors },
     Family { name: "needles", sketch: needles },
     Family { name: "stacked cylinders", sketch: stacked },
@@ -52,6 +53,7 @@ pub const FAMILIES: &[Family] = &[
     Family { name: "lens of 0.0002 degrees", sketch: long_lens },
     Family { name: "lens of 175 degrees", sketch: wide_lens },
     Family { name: "lens of 90 degrees", sketch: right_angle },
+    Family { name: "lattice of mirrors", sketch: lattice },
     Family { name: "touching rays", sketch: tangents },
     Family { name: "contact points", sketch: contacts },
     Family { name: "mirror images", sketch: symmetric },
@@ -257,6 +259,35 @@ fn inside_cylinder(random: &mut Random) -> Sketch {
     sketch
 }
 
+/// Small round mirrors in a large one: each bounce spreads neighbouring rays by the ratio of the sizes.
+fn mirrored_room(random: &mut Random) -> Sketch {
+    let mut sketch = random.sketch(75.0);
+    let shell = random.decimal(0.5, 1.0);
+    let radius = random.decimal(4.0, 9.0);
+    sketch.surface(random.finish_reflecting(shell));
+    if random.chance(0.5) {
+        sketch.sphere([0.3, -0.2, -1.0], radius);
+    } else {
+        sketch.cylinder(radius, [0.3, -1.0], [-2.0, 1.7]);
+    }
+    for _ in 0..8 {
+        let mirror = random.decimal(0.6, 1.0);
+        let [x, y, z] = [random.decimal(-1.5, 1.5), random.decimal(-1.5, 1.5), random.decimal(-4.0, 1.0)];
+        let size = random.pick(&[0.4, 0.2, 0.1, 0.03, 0.003]);
+        sketch.surface(random.finish_reflecting(mirror));
+        if random.chance(0.7) {
+            sketch.sphere([x, y, z], size);
+        } else {
+            sketch.cylinder(size, [x, z], [y - 0.5, y + 0.5]);
+        }
+    }
+    for _ in 0..2 {
+        let color = random.color(0.1, 0.5);
+        sketch.light(color, [random.decimal(-2.0, 2.0), random.decimal(-1.5, 1.5), random.decimal(-3.0, 1.0)]);
+    }
+    sketch
+}
+
 /// Four mirrors about the eye that almost touch, touch or overlap, so that rays are caught between them.
 fn hall_of_mirrors(random: &mut Random) -> Sketch {
     let mut sketch = random.sketch(60.0);
@@ -445,6 +476,33 @@ fn right_angle(random: &mut Random) -> Sketch {
         } else {
             let floor = whole(random, -3.0, 1.0);
             sketch.cylinder(1.0, [x, z], [floor, floor + 1.0]);
+        }
+    }
+    sketch
+}
+
+/// Mirrors, lights and planes at whole numbers under rational eye rays, so that bounces end on edges too.
+fn lattice(random: &mut Random) -> Sketch {
+    let mut sketch = random.sketch(90.0);
+    let whole = |random: &mut Random, low: f64, high: f64| random.between(low, high + 1.0).floor();
+    for _ in 0..3 {
+        let color = random.color(0.1, 0.5);
+        sketch.light(color, [whole(random, -2.0, 2.0), whole(random, -1.0, 3.0), whole(random, -6.0, 1.0)]);
+    }
+    // A floor and a ceiling that face each other.
+    sketch.surface(random.finish_reflecting(0.8)).cylinder(8.0, [0.0, -2.0], [-3.0, -2.0]);
+    sketch.surface(random.finish_reflecting(0.7)).cylinder(8.0, [0.0, -2.0], [4.0, 5.0]);
+    for _ in 0..5 {
+        let [x, z] = [whole(random, -4.0, 4.0), whole(random, -8.0, -2.0)];
+        let floor = whole(random, -2.0, 2.0);
+        let mirror = random.pick(&[0.0, 0.5]);
+        sketch.surface(random.finish_reflecting(mirror));
+        if random.chance(0.3) {
+            sketch.sphere([x, floor, z], 1.0);
+        } else {
+            let radius = random.pick(&[0.5, 1.0, 2.0]);
+            let height = random.pick(&[1.0, 2.0]);
+            sketch.cylinder(radius, [x, z], [floor, floor + height]);
         }
     }
     sketch
