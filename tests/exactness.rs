@@ -108,10 +108,11 @@ fn every_family_is_exact() {
 #[test]
 fn the_finest_families_need_more_bits_than_the_tracer_has() {
     // FIXME: double-double loses these rays, and takes what it cannot tell for ties. Once no pixel differs any more the
-    // families belong to the others.
+    // families belong to the others. Its limits, as measured: specks of 1e-29 of their distance are exact, of 1e-30 not;
+    // 16 levels among mirrors are, 20 are not.
     for family in FINEST {
         let n_wrong: usize =
-            (0..3).map(|seed| compare(family.sketch(seed).make().view(), &sized([23, 31])).len()).sum();
+            (0..3).map(|seed| compare(family.sketch(seed).make().view(), &sized([32, 24])).len()).sum();
         assert!(n_wrong > 0, "{} is exact now", family.name);
     }
 }
@@ -159,13 +160,13 @@ fn whole(program: &ir::Valid) -> SceneView<'_> {
 
 #[test]
 fn the_oracle_does_not_depend_on_its_precision() {
-    for (title, sketch, size) in cases(FAMILIES).step_by(4).chain(cases(FINEST).step_by(2)) {
+    for (title, sketch, size) in cases(FAMILIES).step_by(5).chain(cases(FINEST).step_by(2)) {
         let made = sketch.make();
         let settings = sized(size);
         let few = Oracle::with_ladder(made.view(), &settings, &[192, 576, 1152, 2304]);
         let many = Oracle::new(made.view(), &settings);
         let width = settings.size.width();
-        for (i, pixel) in (0..).zip(many.image()).step_by(7) {
+        for (i, pixel) in (0..).zip(many.image()).step_by(11) {
             let other = few.pixel(i % width, i / width);
             assert_eq!((pixel.rgb, pixel.open_ties), (other.rgb, other.open_ties), "{title} pixel {i}");
         }
@@ -179,7 +180,7 @@ fn the_oracle_does_not_depend_on_its_filter() {
         let settings = sized(size);
         let unfiltered = Oracle::new(made.view(), &settings).testing_all();
         let width = settings.size.width();
-        for (i, pixel) in (0..).zip(Oracle::new(made.view(), &settings).image()).step_by(17) {
+        for (i, pixel) in (0..).zip(Oracle::new(made.view(), &settings).image()).step_by(37) {
             assert_eq!(pixel.rgb, unfiltered.pixel(i % width, i / width).rgb, "{title} pixel {i}");
         }
     }

@@ -59,7 +59,7 @@ pub const FAMILIES: &[Family] = &[
     Family { name: "mirror images", sketch: symmetric },
     Family { name: "extreme surfaces", sketch: extreme_surfaces },
     Family { name: "eye on a surface", sketch: eye_on_surface },
-    Family { name: "specks", sketch: specks },
+    Family { name: "specks", sketch: |random| specks(random, &[1e-28, 1e-20, 1e-12, 1e-5]) },
     Family { name: "giants", sketch: giants },
     Family { name: "scene in a scene", sketch: |random| scene_in_scene(random, &[-3, -6, -9]) },
     Family { name: "eye at the centre of a mirror", sketch: |random| centred_mirror(random, &[1.0, 0.3]) },
@@ -68,7 +68,8 @@ pub const FAMILIES: &[Family] = &[
 
 /// Families in which a ray's error grows beyond what 106 bits can follow.
 pub const FINEST: &[Family] = &[
-    Family { name: "scene in a scene, finest", sketch: |random| scene_in_scene(random, &[-30]) },
+    Family { name: "finest specks", sketch: |random| specks(random, &[1e-32]) },
+    Family { name: "finest scene in a scene", sketch: |random| scene_in_scene(random, &[-30]) },
     Family { name: "specks about the centre of a mirror", sketch: |random| centred_mirror(random, &[1e-6, 1e-15]) },
 ];
 
@@ -615,13 +616,13 @@ fn eye_on_surface(random: &mut Random) -> Sketch {
     sketch
 }
 
-/// Objects of 1e-5 and of 1e-30 of the others' size where rays meet them.
-fn specks(random: &mut Random) -> Sketch {
+/// Objects of a tiny part of the others' size where rays meet them.
+fn specks(random: &mut Random, sizes: &[f64]) -> Sketch {
     let mut sketch = random.sketch(60.0);
     random.lights(&mut sketch, 2);
     let depth = random.pick(&[2.0, 3.0, 0.5]);
     for _ in 0..3 {
-        let speck = random.pick(&[1e-30, 1e-20, 1e-12, 1e-5]);
+        let speck = random.pick(sizes);
         let mirror = random.pick(&[0.0, 0.7]);
         sketch.surface(random.finish_reflecting(mirror));
         let place = depth + random.pick(&[0.0, 1.0, 0.25]);
