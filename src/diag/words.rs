@@ -1,12 +1,24 @@
 //! The small change of messages: quotes, lists and counts in words.
 
-/// The most characters of a scene that a message quotes.
+/// The most characters of a word of a scene that a message quotes.
 const MAX_QUOTED: usize = 40;
+/// The most characters of a line that a help proposes.
+const MAX_PROPOSED: usize = 200;
 
-/// Returns `text` in backticks, cut off when it is long.
+/// Returns a word of a scene in backticks, cut off when it is long.
 #[must_use]
-pub fn quoted(text: &str) -> String {
-    match text.char_indices().nth(MAX_QUOTED) {
+pub fn quoted(word: &str) -> String {
+    in_backticks(word, MAX_QUOTED)
+}
+
+/// Returns the help to write `text` in place of what stands there.
+#[must_use]
+pub fn proposed(text: &str) -> String {
+    format!("write {}", in_backticks(text, MAX_PROPOSED))
+}
+
+fn in_backticks(text: &str, max_chars: usize) -> String {
+    match text.char_indices().nth(max_chars) {
         Some((end, _)) => format!("`{}…`", &text[..end]),
         None => format!("`{text}`"),
     }

@@ -1,6 +1,6 @@
 //! The values of arguments against the ranges of the command table.
 
-use crate::diag::words::{named, quoted};
+use crate::diag::words::{named, proposed, quoted};
 use crate::diag::{Code, Diagnostic, codes};
 use crate::source::{Source, Span};
 use crate::syntax::spec::{CommandKind, CommandSpec, Range};
@@ -98,7 +98,7 @@ impl Values<'_> {
         let span = self.spans[low].to(self.spans[high]);
         let (message, help) = if self.numbers[low] > self.numbers[high] {
             let message = format!("`{low_name}` {low_text} is above `{high_name}` {high_text}");
-            (message, format!("swap them: {}", quoted(&self.with_swapped(low, high))))
+            (message, format!("swap them: {}", proposed(&self.with_swapped(low, high))))
         } else {
             let message =
                 format!("`{low_name}` and `{high_name}` are both {low_text}: the `{}` has no height", self.spec.name);

@@ -171,9 +171,13 @@ impl Piece {
         let shown_end = place.start as usize + marked.len();
         let after: String =
             text[shown_end..line.end.max(shown_end as u32) as usize].chars().take(CONTEXT_CHARS).collect();
-        let n_before = before.chars().count() + 1;
+        let is_cut = |is_cut: bool| if is_cut { "…" } else { "" };
+        let cut_before = is_cut(line.start as usize + before.len() < place.start as usize);
+        let cut_after = is_cut(shown_end + after.len() < line.end as usize);
+        let n_before = before.chars().count() + cut_before.chars().count();
         let n_marked = marked.chars().count().max(1);
-        Self { text: harmless(&format!("…{before}{marked}{after}…")).replace('\t', " "), n_before, n_marked }
+        let text = harmless(&format!("{cut_before}{before}{marked}{after}{cut_after}")).replace('\t', " ");
+        Self { text, n_before, n_marked }
     }
 }
 

@@ -1,6 +1,6 @@
 //! What a line is that begins with no command.
 
-use crate::diag::words::{listed, quoted};
+use crate::diag::words::{listed, proposed, quoted};
 use crate::diag::{Diagnostic, codes};
 use crate::source::{Source, Span};
 use crate::syntax::parser::numeral::{SEPARATORS, numbers_between};
@@ -89,7 +89,7 @@ fn glued(lower: &str, text: &str, source: &Source, args: &[Token]) -> Option<Gue
         std::iter::once(rest.trim_start_matches(['=', ':'])).chain(args.iter().map(|arg| source.slice(arg.span)));
     let help = match numbers_between(texts, &SEPARATORS) {
         Some(numbers) if numbers.len() == spec.numbers().len() => {
-            format!("write {}", quoted(&format!("{} {}", spec.name, numbers.join(" "))))
+            proposed(&format!("{} {}", spec.name, numbers.join(" ")))
         }
         _ => format!("put a blank between `{}` and {}", spec.name, quoted(rest)),
     };

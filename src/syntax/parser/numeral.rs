@@ -1,6 +1,6 @@
 //! What is wrong with a text that should be a number.
 
-use crate::diag::words::quoted;
+use crate::diag::words::{proposed, quoted};
 use crate::diag::{Code, Diagnostic, codes};
 use crate::source::{Source, Span};
 use crate::syntax::lexer::lex_line;
@@ -29,7 +29,7 @@ impl Finding {
 
     /// Makes a finding whose help is to write `repair`; none when that is no number either.
     fn repaired(why: impl Into<String>, repair: &str) -> Option<Self> {
-        is_number(repair).then(|| Self::malformed(why, format!("write {}", quoted(repair))))
+        is_number(repair).then(|| Self::malformed(why, proposed(repair)))
     }
 }
 
@@ -91,7 +91,7 @@ pub(super) fn find_commas(command: &BadCommand<'_>) -> Option<Diagnostic> {
     let message = format!("{what} among the numbers of `{}`", command.spec.name);
     let diagnostic = Diagnostic::new(&codes::MALFORMED_NUMBER, first.span, message)
         .label("blanks alone separate numbers")
-        .help(format!("write {}", quoted(&repair)));
+        .help(proposed(&repair));
     Some(with_separator.fold(diagnostic, |diagnostic, arg| diagnostic.secondary(arg.span, "here too")))
 }
 
@@ -108,9 +108,8 @@ pub(super) fn find_stray_words(command: &BadCommand<'_>) -> Option<Diagnostic> {
     }
     let repair = numbers.iter().fold(command.spec.name.to_owned(), |line, arg| line + " " + command.text(arg));
     let message = format!("{} among the numbers of `{}`", quoted(command.text(first)), command.spec.name);
-    let diagnostic = Diagnostic::new(&codes::MALFORMED_NUMBER, first.span, message)
-        .label("not a number")
-        .help(format!("write {}", quoted(&repair)));
+    let diagnostic =
+        Diagnostic::new(&codes::MALFORMED_NUMBER, first.span, message).label("not a number").help(proposed(&repair));
     Some(words[1..].iter().fold(diagnostic, |diagnostic, word| diagnostic.secondary(word.span, "here too")))
 }
 
@@ -243,7 +242,7 @@ fn bad_exponent(text: &str) -> Option<Finding> {
         return None;
     }
     match exponent {
-        "" | "+" | "-" => Some(Finding::malformed("its exponent has no digits", format!("write {}", quoted(mantissa)))),
+        "" | "+" | "-" => Some(Finding::malformed("its exponent has no digits", proposed(mantissa))),
         _ => is_number(exponent).then(|| {
             Finding::malformed("its exponent is not a whole number", "write a whole exponent, such as `1e-3`")
         }),
@@ -289,7 +288,7 @@ fn glued(text: &str) -> Option<Finding> {
     if rest.starts_with(['*', '/', '^', '+', '-']) {
         return Some(Finding::malformed("a scene does not calculate", "write the result as one number"));
     }
-    Some(Finding::malformed(format!("{} follows the number", quoted(rest)), format!("write {}", quoted(number))))
+    Some(Finding::malformed(format!("{} follows the number", quoted(rest)), proposed(number)))
 }
 
 fn no_digits(text: &str) -> Option<Finding> {

@@ -1,6 +1,6 @@
 //! What is wrong with the file name of a `write`.
 
-use crate::diag::words::quoted;
+use crate::diag::words::{proposed, quoted};
 use crate::diag::{Diagnostic, codes};
 use crate::source::{Source, Span};
 use crate::syntax::parser::errors::BadCommand;
@@ -61,7 +61,7 @@ fn help_for_ending(name: &str, kind: TokenKind) -> String {
 /// Returns the help to write this name, in quotes where they are needed.
 fn written(name: &str) -> String {
     let needs_quotes = name.contains([' ', '\t']) || name.starts_with('#');
-    if needs_quotes { format!("write {}", quoted(&format!("\"{name}\""))) } else { format!("write {}", quoted(name)) }
+    if needs_quotes { proposed(&format!("\"{name}\"")) } else { proposed(name) }
 }
 
 /// Returns the diagnostic of a `write` with nothing behind it. `name` is the place of the word `write`.

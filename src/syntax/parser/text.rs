@@ -38,7 +38,7 @@ pub(super) fn check_bytes(source: &Source, acc: &mut Vec<Diagnostic>) {
             1 => format!("byte 0x{:02X} is not UTF-8", bytes[0]),
             n => format!("{n} bytes from 0x{:02X} on are not UTF-8", bytes[0]),
         };
-        let place = format!("byte {} of the file", span.start);
+        let place = format!("at offset {} of the file", span.start);
         let diagnostic =
             Diagnostic::new(&codes::INVALID_TEXT, *span, message).label(place).help(help_for_byte(bytes[0]));
         acc.push(with_places(diagnostic, others.iter().map(|(span, _)| *span)));
