@@ -2,6 +2,7 @@
 #![allow(dead_code, reason = "each suite uses a part")]
 
 pub mod carets;
+pub mod ebnf;
 
 use std::fs;
 use std::path::{Path, PathBuf};
