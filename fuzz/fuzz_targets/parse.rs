@@ -1,0 +1,12 @@
+//! Does any text break a law of the language wing?
+
+#![no_main]
+
+use clisc::testing::{assert_compiles_soundly, assert_parse_is_stable, assert_tokens_tile};
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(|bytes: &[u8]| {
+    assert_tokens_tile(bytes);
+    assert_parse_is_stable(bytes);
+    assert_compiles_soundly(bytes);
+});

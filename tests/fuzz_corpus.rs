@@ -1,0 +1,62 @@
+//! The laws that the fuzz targets check, on every scene, fixture and seed: what `cargo fuzz` starts from, without it.
+
+use std::fs;
+use std::panic::{self, AssertUnwindSafe};
+use std::path::{Path, PathBuf};
+
+use clisc::testing::{assert_compiles_soundly, assert_parse_is_stable, assert_renders_soundly, assert_tokens_tile};
+
+/// The folders that `fuzz/run` reads.
+const FOLDERS: [&str; 3] = ["fuzz/seeds", "scenes", "tests/fixtures"];
+
+/// Returns every file below a folder, sorted.
+fn files_below(folder: &Path) -> Vec<PathBuf> {
+    let mut files = Vec::new();
+    for entry in fs::read_dir(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display())) {
+        let path = entry.expect("an entry").path();
+        if path.is_dir() {
+            files.extend(files_below(&path));
+        } else {
+            files.push(path);
+        }
+    }
+    files.sort();
+    files
+}
+
+/// Checks a law on every input, and names those that break it.
+fn check_on_all(law: impl Fn(&[u8])) {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut faults = Vec::new();
+    for folder in FOLDERS {
+        let files = files_below(&root.join(folder));
+        assert!(files.len() > 5, "{folder} is as good as empty");
+        for path in files {
+            let bytes = fs::read(&path).expect("a readable file");
+            if panic::catch_unwind(AssertUnwindSafe(|| law(&bytes))).is_err() {
+                faults.push(path);
+            }
+        }
+    }
+    assert!(faults.is_empty(), "a law is broken by {faults:#?}");
+}
+
+#[test]
+fn parse_target_accepts_the_corpus() {
+    check_on_all(|bytes| {
+        assert_tokens_tile(bytes);
+        assert_parse_is_stable(bytes);
+        assert_compiles_soundly(bytes);
+    });
+}
+
+#[test]
+fn render_target_accepts_the_corpus() {
+    check_on_all(assert_renders_soundly);
+}
+
+#[test]
+fn fuzz_script_reads_the_same_folders() {
+    let script = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/run")).expect("the script");
+    assert!(script.contains(&FOLDERS.join(" ")), "fuzz/run and this test read different folders");
+}
