@@ -3,8 +3,9 @@
 //! Lowering reports what a person wrote wrong, with its place; this is for every other maker of programs, and the reason
 //! why nothing behind it has to check a number again.
 
-use std::collections::HashMap;
 use std::ops::Deref;
+
+use rustc_hash::FxHashMap;
 
 use crate::ir::{Command, Program};
 
@@ -178,7 +179,9 @@ fn orders_are_dense(program: &Program) -> bool {
 }
 
 fn identify_equations(program: &Program) -> Equations {
-    let mut ids = HashMap::new();
+    // A sphere has one equation, a cylinder three.
+    let n_equations = program.spheres.len() as usize + 3 * program.cylinders.len() as usize;
+    let mut ids = FxHashMap::with_capacity_and_hasher(n_equations, rustc_hash::FxBuildHasher);
     let mut next_id = 0;
     let mut identify = |coefficients: [f64; 4]| {
         *ids.entry(EquationKey::new(coefficients)).or_insert_with(|| {
