@@ -7,6 +7,8 @@
 
 pub mod sketch;
 
+use clisc::testing::Stream;
+
 use self::sketch::{Finish, Sketch};
 
 /// A kind of scene.
@@ -21,7 +23,7 @@ impl Family {
     /// Makes the scene of one seed.
     pub fn sketch(&self, seed: u64) -> Sketch {
         let of_name = self.name.bytes().fold(seed, |hash, byte| hash.wrapping_mul(0x100_0000_01b3) ^ u64::from(byte));
-        (self.sketch)(&mut Random(of_name))
+        (self.sketch)(&mut Random(Stream::new(of_name)))
     }
 }
 
@@ -73,20 +75,13 @@ pub const FINEST: &[Family] = &[
     Family { name: "specks about the centre of a mirror", sketch: |random| centred_mirror(random, &[1e-6, 1e-15]) },
 ];
 
-/// A splitmix64 generator: the same numbers on every machine.
-pub struct Random(u64);
+/// A stream of numbers with a taste for scenes.
+pub struct Random(Stream);
 
 impl Random {
-    fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
     /// Returns a number in [0, 1).
     fn unit(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
+        self.0.unit()
     }
 
     fn below(&mut self, n: usize) -> usize {
@@ -103,7 +98,7 @@ impl Random {
 
     /// Returns a number of full length in [low, high).
     fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
+        self.0.between(low, high)
     }
 
     /// Returns a number of three decimals, as people write them, in [low, high].
