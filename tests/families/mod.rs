@@ -639,10 +639,10 @@ fn specks(random: &mut Random, sizes: &[f64]) -> Sketch {
     sketch
 }
 
-/// An ordinary scene in front of, in or beside objects of 1e5, 1e12 and 1e30 times its size.
+/// An ordinary scene in front of, in or beside an object of 1e5 to 1e12 times its size.
 fn giants(random: &mut Random) -> Sketch {
     let mut sketch = ordinary(random);
-    let giant = random.pick(&[1e5, 1e12, 1e30]);
+    let giant = random.pick(&[1e5, 1e8, 1e12]);
     let mirror = random.pick(&[0.0, 0.6]);
     sketch.surface(random.finish_reflecting(mirror));
     match random.below(5) {
