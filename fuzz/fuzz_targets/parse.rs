@@ -1,12 +1,11 @@
-//! Does any text break a law of the language wing?
+//! Does any text break a law of the lexer or the parser?
 
 #![no_main]
 
-use clisc::testing::{assert_compiles_soundly, assert_parse_is_stable, assert_tokens_tile};
+use clisc::testing::{assert_parse_is_stable, assert_tokens_tile};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {
     assert_tokens_tile(bytes);
     assert_parse_is_stable(bytes);
-    assert_compiles_soundly(bytes);
 });

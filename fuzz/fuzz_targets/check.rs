@@ -1,0 +1,8 @@
+//! Does any text break a law of what `clisc check` does: lowering it and drawing what is wrong with it?
+
+#![no_main]
+
+use clisc::testing::assert_compiles_soundly;
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(|bytes: &[u8]| assert_compiles_soundly(bytes));
