@@ -107,9 +107,12 @@ fn copies_behind_the_first_are_never_seen() {
 #[test]
 fn a_black_light_changes_nothing() {
     for_all_sketches(|title, sketch| {
-        let mut lit = sketch.clone();
-        lit.light([0.0; 3], [0.3, 0.7, -1.1].map(|length| length * sketch.largest_length()));
-        assert_same(&format!("{title} with a black light"), sketch, &render(sketch), &render(&lit));
+        // Far away too, where it would outgrow the scene by more than squares can bear.
+        for distance in [1.0, 1e120] {
+            let mut lit = sketch.clone();
+            lit.light([0.0; 3], [0.3, 0.7, -1.1].map(|length| length * distance * sketch.largest_length()));
+            assert_same(&format!("{title} with a black light"), sketch, &render(sketch), &render(&lit));
+        }
     });
 }
 

@@ -27,8 +27,8 @@ pub struct Primitive {
 /// The scene of one image.
 ///
 /// All positions and radii are multiplied by one power of two, so that the largest is between 1 and 2: that changes no
-/// bit of the image as long as nothing underflows, and keeps squares in range from 2⁻³⁰⁰ to 2³⁰⁰ and beyond. Numbers
-/// below 2⁻⁴⁵⁰ of the largest lose their squares.
+/// bit of the image as long as nothing underflows, and keeps squares in range from 2⁻³⁰⁰ to 2³⁰⁰ and beyond. What is
+/// smaller than 2⁻²⁴⁰ of the largest, about 10⁻⁷², loses the products of four lengths that a shadow ray's discriminant is.
 #[derive(Debug)]
 pub struct Scene<'p> {
     /// The colour of a ray that meets nothing.
@@ -62,10 +62,11 @@ impl<'p> Scene<'p> {
         };
         let scale = scale_to_unit(&view);
         let equations = view.equations();
-        let shining = view.lights().iter().filter(|light| light.color != DVec3::ZERO);
         Self {
             background: view.background(),
-            lights: shining.map(|light| Light { color: light.color, position: light.position * scale }).collect(),
+            lights: shining(&view)
+                .map(|light| Light { color: light.color, position: light.position * scale })
+                .collect(),
             surfaces: view.surfaces(),
             spheres: lay_out_spheres(view.spheres(), scale),
             sphere_primitives: (view.spheres().iter())
@@ -83,6 +84,11 @@ impl<'p> Scene<'p> {
     pub fn surface(&self, primitive: Primitive) -> &'p ir::Surface {
         &self.surfaces[primitive.surface.index()]
     }
+}
+
+/// Returns the lights that are not black.
+fn shining<'p>(view: &SceneView<'p>) -> impl Iterator<Item = &'p ir::Light> + use<'p> {
+    view.lights().iter().filter(|light| light.color != DVec3::ZERO)
 }
 
 fn lay_out_spheres(spheres: &[ir::Sphere], scale: f64) -> SphereLanes {
@@ -108,7 +114,7 @@ fn lay_out_cylinders(cylinders: &[ir::Cylinder], scale: f64) -> CylinderLanes {
 
 /// Returns the power of two that brings the largest position or radius of the scene between 1 and 2.
 fn scale_to_unit(view: &SceneView<'_>) -> f64 {
-    let lights = view.lights().iter().map(|light| light.position.abs().max_element());
+    let lights = shining(view).map(|light| light.position.abs().max_element());
     let spheres = view.spheres().iter().map(|s| s.center.abs().max_element().max(s.radius));
     let cylinders = view.cylinders().iter().map(|c| {
         [c.x, c.z, c.radius, c.y_min, c.y_max].into_iter().fold(0.0, |largest: f64, number| largest.max(number.abs()))
