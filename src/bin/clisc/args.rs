@@ -86,9 +86,9 @@ pub struct RunArgs {
     /// The rules: a, spheres with diffuse light only; b, the whole language.
     #[arg(long, value_enum, default_value_t, hide_possible_values = true, ignore_case = true)]
     pub part: Part,
-    /// Threads to render with; 0 means one a core.
-    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
-    pub threads: usize,
+    /// Threads to render with, at most 1024; 0 means one a core.
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true, value_parser = value_parser!(u16).range(..=MAX_THREADS))]
+    pub threads: u16,
     /// Samples a pixel, N by N, at most 256; smooths edges.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u32).range(1..=i64::from(Settings::MAX_SAMPLES)))]
     pub samples: u32,
@@ -108,6 +108,9 @@ pub struct RunArgs {
     #[arg(long)]
     pub dry_run: bool,
 }
+
+/// The most threads to render with: more only cost, and a hundred thousand would not even start.
+const MAX_THREADS: i64 = 1024;
 
 const RUN_EXAMPLES: &str = "\
 Examples:

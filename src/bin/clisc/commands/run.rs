@@ -30,7 +30,7 @@ use crate::{input, interrupt, print};
 /// Renders scenes and saves their images. A fault in one scene does not keep the others from being rendered.
 pub fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(args.threads)
+        .num_threads(args.threads.into())
         .build()
         .with_context(|| format!("cannot start {} threads", args.threads))?;
     let mut session = Session {
