@@ -59,6 +59,7 @@ impl Write<'_> {
         let mut band = BandSize::new(self.options.settings);
         let file = Counted { inner: file, n_bytes: 0 };
         let mut png = PngStream::new(file, size.width(), size.height()).map_err(|e| self.write_error(e))?;
+        let cancellation = self.options.cancellation;
         let (mut done, mut next) = (Vec::new(), Vec::new());
         let mut n_rows = 0;
         while n_rows < size.height() {
@@ -66,7 +67,7 @@ impl Write<'_> {
             n_rows = rows.end;
             next.resize(rows.len() * row_bytes, 0);
             let ((counts, trace_time), (encoded, encode_time)) = rayon::join(
-                || self.timed(|| tracer.render_rows(rows, &mut next)),
+                || self.timed(|| tracer.render_rows_unless(rows, &mut next, &|| cancellation.is_cancelled())),
                 || self.timed(|| png.write_rows(&done)),
             );
             report.counts += counts;

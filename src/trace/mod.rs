@@ -72,6 +72,20 @@ impl<'p> Tracer<'p> {
     /// # Panics
     /// When `rgb` does not hold exactly the pixels of `rows`, or a row lies outside the image.
     pub fn render_rows(&self, rows: Range<u32>, rgb: &mut [u8]) -> Counts {
+        self.render_rows_unless(rows, rgb, &|| false)
+    }
+
+    /// Does the work of [`Tracer::render_rows`] until `is_cancelled`, which is asked before each pixel, says so; what is
+    /// then in `rgb` is no image.
+    ///
+    /// # Panics
+    /// As [`Tracer::render_rows`].
+    pub fn render_rows_unless(
+        &self,
+        rows: Range<u32>,
+        rgb: &mut [u8],
+        is_cancelled: &(dyn Fn() -> bool + Sync),
+    ) -> Counts {
         let width = self.settings.size.width() as usize;
         assert!(rows.end <= self.settings.size.height());
         assert_eq!(rgb.len(), rows.len() * width * 3);
@@ -79,7 +93,7 @@ impl<'p> Tracer<'p> {
             .zip(rgb.par_chunks_mut(width * 3))
             .flat_map(|(row, bytes)| {
                 let tiles = bytes.par_chunks_mut(TILE_PIXELS * 3).enumerate();
-                tiles.map(move |(tile, bytes)| self.render_run(row, (tile * TILE_PIXELS) as u32, bytes))
+                tiles.map(move |(tile, bytes)| self.render_run(row, (tile * TILE_PIXELS) as u32, bytes, is_cancelled))
             })
             .reduce(Counts::default, |mut total, counts| {
                 total += counts;
@@ -88,10 +102,13 @@ impl<'p> Tracer<'p> {
     }
 
     /// Renders pixels of one row from `first_column` on.
-    fn render_run(&self, row: u32, first_column: u32, rgb: &mut [u8]) -> Counts {
+    fn render_run(&self, row: u32, first_column: u32, rgb: &mut [u8], is_cancelled: &dyn Fn() -> bool) -> Counts {
         let mut coarse = Integrator::new(&self.scene, &self.settings);
         let mut fine = Integrator::new(&self.scene, &self.settings);
         for (column, rgb) in (first_column..).zip(rgb.chunks_exact_mut(3)) {
+            if is_cancelled() {
+                break;
+            }
             let pixel = self.sampling.pixel(column, row);
             let settled = pixel::settle(&mut coarse, &self.camera, &pixel).unwrap_or_else(|_| {
                 fine.judge.counts.refined_pixels += 1;
