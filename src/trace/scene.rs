@@ -26,9 +26,10 @@ pub struct Primitive {
 
 /// The scene of one image.
 ///
-/// All positions and radii are multiplied by one power of two, so that the largest is between 1 and 2: that changes no
-/// bit of the image as long as nothing underflows, and keeps squares in range from 2⁻³⁰⁰ to 2³⁰⁰ and beyond. What is
-/// smaller than 2⁻²⁴⁰ of the largest, about 10⁻⁷², loses the products of four lengths that a shadow ray's discriminant is.
+/// All positions and radii are multiplied by one power of two, so that the largest object is between 1 and 2: that changes
+/// no bit of the image as long as nothing underflows, and keeps squares in range from 2⁻³⁰⁰ to 2³⁰⁰ and beyond. What is
+/// smaller than 2⁻²⁴⁰ of that, about 10⁻⁷², loses the products of four lengths that a shadow ray's discriminant is; a
+/// light or the end of a cylinder may be 2⁴⁵⁰ away, about 10¹³⁵.
 #[derive(Debug)]
 pub struct Scene<'p> {
     /// The colour of a ray that meets nothing.
@@ -60,7 +61,7 @@ impl<'p> Scene<'p> {
             Part::A => &[],
             Part::B => view.cylinders(),
         };
-        let scale = scale_to_unit(&view);
+        let scale = scale_to_unit(&view, cylinders);
         let equations = view.equations();
         Self {
             background: view.background(),
@@ -112,15 +113,25 @@ fn lay_out_cylinders(cylinders: &[ir::Cylinder], scale: f64) -> CylinderLanes {
     }
 }
 
-/// Returns the power of two that brings the largest position or radius of the scene between 1 and 2.
-fn scale_to_unit(view: &SceneView<'_>) -> f64 {
-    let lights = shining(view).map(|light| light.position.abs().max_element());
+/// The largest exponent that a scaled length may have: its square times a few others stays below 2⁹⁹⁰.
+const MAX_EXPONENT: i32 = 450;
+
+/// Returns the power of two that brings the largest of the spheres' and the cylinders' sizes and places between 1 and 2.
+///
+/// How far a cylinder reaches up and down and where the lights are does not count, so that an endless pillar or a distant
+/// sun does not make the rest vanish, as long as they do not overflow.
+fn scale_to_unit(view: &SceneView<'_>, cylinders: &[ir::Cylinder]) -> f64 {
+    let largest_of = |lengths: &[f64]| lengths.iter().fold(0.0, |largest: f64, length| largest.max(length.abs()));
     let spheres = view.spheres().iter().map(|s| s.center.abs().max_element().max(s.radius));
-    let cylinders = view.cylinders().iter().map(|c| {
-        [c.x, c.z, c.radius, c.y_min, c.y_max].into_iter().fold(0.0, |largest: f64, number| largest.max(number.abs()))
-    });
-    let largest = lights.chain(spheres).chain(cylinders).fold(0.0, f64::max);
-    let exponent = libm::ilogb(largest.max(f64::MIN_POSITIVE));
+    let walls = cylinders.iter().map(|c| largest_of(&[c.x, c.z, c.radius]));
+    let largest = spheres.chain(walls).fold(0.0, f64::max);
+
+    let heights = cylinders.iter().map(|c| largest_of(&[c.y_min, c.y_max]));
+    let lights = shining(view).map(|light| light.position.abs().max_element());
+    let farthest = heights.chain(lights).fold(largest, f64::max);
+
+    let exponent = |length: f64| libm::ilogb(length.max(f64::MIN_POSITIVE));
+    let shift = (-exponent(largest)).min(MAX_EXPONENT - exponent(farthest));
     // 2^1022 is the largest power whose reciprocal is normal.
-    libm::ldexp(1.0, -exponent.clamp(-1022, 1022))
+    libm::ldexp(1.0, shift.clamp(-1022, 1022))
 }
