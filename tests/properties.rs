@@ -4,8 +4,10 @@ mod families;
 
 use std::ops::Range;
 
-use clisc::ir::SceneView;
-use clisc::trace::{Settings, Size, Tracer};
+use clisc::compile;
+use clisc::ir::{self, Registers, SceneView};
+use clisc::source::Source;
+use clisc::trace::{Part, Settings, Size, Tracer};
 
 use families::FAMILIES;
 use families::sketch::{Finish, Sketch};
@@ -114,6 +116,44 @@ fn a_black_light_changes_nothing() {
             assert_same(&format!("{title} with a black light"), sketch, &render(sketch), &render(&lit));
         }
     });
+}
+
+#[test]
+fn an_endless_pillar_out_of_sight_changes_nothing() {
+    let scene = |pillar: &str| {
+        let text = format!(
+            "fov 60\nlight 1 1 1 2 4 1\nsurface .1 .1 .1 .6 .3 .2 .4 .4 .4 20 .3\nsphere 0 0 -4 1\nsphere 1 .5 -3 .3\n\
+             {pillar}\nwrite a.png\n"
+        );
+        ir::validate(compile(&Source::new("pillar.cli", text)).program).expect("a sound program")
+    };
+    let image = |program: &ir::Valid, part: Part| {
+        let mut registers = Registers::default();
+        program.commands.iter().for_each(|command| registers.step(command));
+        let mut rgb = vec![0; (WIDTH * HEIGHT * 3) as usize];
+        Tracer::new(SceneView::new(program, registers), &Settings { part, ..settings() })
+            .render_rows(0..HEIGHT, &mut rgb);
+        rgb
+    };
+    for part in [Part::A, Part::B] {
+        let without = image(&scene(""), part);
+        // Behind the eye and the light, and too thin to be met by chance.
+        for reach in ["1e6", "1e100", "1e130"] {
+            let with = image(&scene(&format!("cylinder 1e-9 7.123456789 50 -{reach} {reach}")), part);
+            assert!(with == without, "a pillar to {reach} changes part {part:?}");
+        }
+    }
+    // Part A draws no cylinders, whatever their size.
+    assert!(image(&scene("cylinder 1 0 -5 -1e300 1e300"), Part::A) == image(&scene(""), Part::A));
+}
+
+#[test]
+fn a_cancelled_render_traces_no_further_pixel() {
+    let program = ir::validate(compile(&Source::new("empty.cli", "write a.png\n")).program).expect("a sound program");
+    let view = SceneView::new(&program, Registers::default());
+    let mut rgb = vec![0; (WIDTH * HEIGHT * 3) as usize];
+    let counts = Tracer::new(view, &settings()).render_rows_unless(0..HEIGHT, &mut rgb, &|| true);
+    assert_eq!(counts.eye_rays, 0);
 }
 
 #[test]
