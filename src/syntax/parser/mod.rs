@@ -166,7 +166,6 @@ impl<'s> Chunk<'s> {
     fn parse_bad_line(&mut self) {
         text::check_foreign(self.source, &self.foreign, &mut self.diagnostics);
         let [name, args @ ..] = self.tokens.as_slice() else { return };
-        let span = args.last().map_or(name.span, |last| name.span.to(last.span));
         let spec = spec::find(self.source.slice(name.span));
         let has_control = self.foreign.iter().any(|token| token.kind == TokenKind::Control);
         let intended = match spec {
@@ -186,7 +185,23 @@ impl<'s> Chunk<'s> {
                 intended
             }
         };
-        self.part.push(span, Shape::Bad(intended), &[]);
+        self.push_bad_line(intended);
+    }
+
+    /// Adds a bad node for the command that the line was meant to be, and one for each command that stands on the line
+    /// behind it, where the line's one diagnostic has said that it does not belong: what they set counts as set, so that
+    /// no later line is blamed for them.
+    fn push_bad_line(&mut self, intended: Option<CommandKind>) {
+        let (mut intended, mut start) = (intended, 0);
+        for end in 1..=self.tokens.len() {
+            let next = self.tokens.get(end);
+            let joined = next.and_then(|token| spec::find(self.source.slice(token.span))).map(|spec| spec.kind);
+            if next.is_none() || joined.is_some() {
+                let span = self.tokens[start].span.to(self.tokens[end - 1].span);
+                self.part.push(span, Shape::Bad(intended), &[]);
+                (intended, start) = (joined, end);
+            }
+        }
     }
 }
 
