@@ -46,7 +46,11 @@ impl Refusal {
             Self::Absolute => {
                 let below = below_root(name);
                 let offer = refuse_name(below).is_none() && !below.is_empty();
-                let help = if offer { format!("write `{below}`") } else { STAY_BELOW.to_owned() };
+                let help = match offer {
+                    true if below.contains([' ', '\t']) => format!("write `\"{below}\"`"),
+                    true => format!("write `{below}`"),
+                    false => STAY_BELOW.to_owned(),
+                };
                 (&codes::ABSOLUTE_NAME, "starts outside the output folder", help)
             }
             Self::Climbs => (&codes::PARENT_FOLDER, "leaves its folder", STAY_BELOW.to_owned()),
