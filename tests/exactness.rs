@@ -9,7 +9,8 @@
 mod families;
 mod oracle;
 
-use std::fmt::Write;
+use std::fmt::Write as _;
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use clisc::ir::{self, Registers, SceneView};
@@ -200,7 +201,11 @@ fn the_oracle_draws_touching_rays_and_counts_them() {
 /// Returns the folder of the original scenes, where there is one.
 fn originals() -> Option<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/course/2018");
-    folder.is_dir().then_some(folder)
+    if !folder.is_dir() {
+        let _ = writeln!(std::io::stderr(), "\nSKIPPED: the original scenes are not at {}", folder.display());
+        return None;
+    }
+    Some(folder)
 }
 
 fn compile_original(folder: &Path, number: usize) -> ir::Valid {
