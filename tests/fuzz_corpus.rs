@@ -1,35 +1,23 @@
 //! The laws that the fuzz targets check, on every scene, fixture and seed: what `cargo fuzz` starts from, without it.
 
+#[path = "support/tree.rs"]
+mod tree;
+
 use std::fs;
 use std::panic::{self, AssertUnwindSafe};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use clisc::testing::{assert_compiles_soundly, assert_parse_is_stable, assert_renders_soundly, assert_tokens_tile};
 
 /// The folders that `fuzz/run` reads.
 const FOLDERS: [&str; 3] = ["fuzz/seeds", "scenes", "tests/fixtures"];
 
-/// Returns every file below a folder, sorted.
-fn files_below(folder: &Path) -> Vec<PathBuf> {
-    let mut files = Vec::new();
-    for entry in fs::read_dir(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display())) {
-        let path = entry.expect("an entry").path();
-        if path.is_dir() {
-            files.extend(files_below(&path));
-        } else {
-            files.push(path);
-        }
-    }
-    files.sort();
-    files
-}
-
 /// Checks a law on every input, and names those that break it.
 fn check_on_all(law: impl Fn(&[u8])) {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut faults = Vec::new();
     for folder in FOLDERS {
-        let files = files_below(&root.join(folder));
+        let files = tree::files_below(&root.join(folder));
         assert!(files.len() > 5, "{folder} is as good as empty");
         for path in files {
             let bytes = fs::read(&path).expect("a readable file");

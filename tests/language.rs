@@ -2,6 +2,9 @@
 
 mod support;
 
+#[path = "support/tree.rs"]
+mod tree;
+
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -22,17 +25,10 @@ fn root() -> &'static Path {
 
 /// Returns the `.cli` files below a folder, sorted. Any other file is a failure, so that none is skipped in silence.
 fn scenes_below(folder: &Path) -> Vec<PathBuf> {
-    let mut scenes = Vec::new();
-    for entry in fs::read_dir(folder).expect("a folder") {
-        let path = entry.expect("an entry").path();
-        if path.is_dir() {
-            scenes.extend(scenes_below(&path));
-        } else {
-            assert!(path.extension().is_some_and(|ending| ending == "cli"), "{} is no fixture", path.display());
-            scenes.push(path);
-        }
+    let scenes = tree::files_below(folder);
+    for path in &scenes {
+        assert!(path.extension().is_some_and(|ending| ending == "cli"), "{} is no fixture", path.display());
     }
-    scenes.sort();
     scenes
 }
 
