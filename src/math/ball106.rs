@@ -182,16 +182,7 @@ impl Real for Ball106 {
     }
 
     fn sign(self) -> Sign {
-        let middle = self.value.hi();
-        if middle > self.error {
-            Sign::Positive
-        } else if middle < -self.error {
-            Sign::Negative
-        } else if self.is_zero() {
-            Sign::Zero
-        } else {
-            Sign::Unknown
-        }
+        Sign::of_ball(self.value.hi(), self.error)
     }
 
     fn power_of_point<const N: usize>(point: [Self; N], center: [f64; N], radius: f64) -> Self {

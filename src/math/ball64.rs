@@ -185,15 +185,7 @@ impl Real for Ball64 {
 
     #[inline]
     fn sign(self) -> Sign {
-        if self.value > self.error {
-            Sign::Positive
-        } else if self.value < -self.error {
-            Sign::Negative
-        } else if self.is_zero() {
-            Sign::Zero
-        } else {
-            Sign::Unknown
-        }
+        Sign::of_ball(self.value, self.error)
     }
 
     fn power_of_point<const N: usize>(point: [Self; N], center: [f64; N], radius: f64) -> Self {

@@ -15,6 +15,22 @@ pub enum Sign {
     Unknown,
 }
 
+impl Sign {
+    /// Returns what is known of the sign of a number that is off from `middle` by at most `error`.
+    #[inline]
+    pub(super) fn of_ball(middle: f64, error: f64) -> Self {
+        if middle > error {
+            Self::Positive
+        } else if middle < -error {
+            Self::Negative
+        } else if middle == 0.0 && error == 0.0 {
+            Self::Zero
+        } else {
+            Self::Unknown
+        }
+    }
+}
+
 /// A real number known up to a bound: the exact result of the same operations on the same exact inputs lies within.
 ///
 /// Infinite bounds and NaN are legal and mean that nothing is known.
