@@ -12,10 +12,10 @@ pub struct Camera<R> {
 
 impl<R: Real> Camera<R> {
     /// Makes the camera of a vertical field of view in degrees for places counted so that half the image's height has
-    /// `steps_per_height` steps.
-    pub fn new(fov_deg: f64, steps_per_height: u32) -> Self {
+    /// `steps_per_half_height` steps.
+    pub fn new(fov_deg: f64, steps_per_half_height: u32) -> Self {
         let (k, relative_error) = tan_half_degrees(fov_deg);
-        Self { step: R::rounded(k, relative_error) / R::exact(f64::from(steps_per_height)) }
+        Self { step: R::rounded(k, relative_error) / R::exact(f64::from(steps_per_half_height)) }
     }
 
     /// Returns the ray through a place `(x, y)`, counted in steps from the middle of the image, right and up.

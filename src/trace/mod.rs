@@ -59,8 +59,8 @@ impl<'p> Tracer<'p> {
         Self {
             scene: Scene::new(view, settings.part),
             settings: settings.clone(),
-            camera: Camera::new(view.fov_deg(), sampling.steps_per_height()),
-            fine_camera: Camera::new(view.fov_deg(), sampling.steps_per_height()),
+            camera: Camera::new(view.fov_deg(), sampling.steps_per_half_height()),
+            fine_camera: Camera::new(view.fov_deg(), sampling.steps_per_half_height()),
             sampling,
         }
     }

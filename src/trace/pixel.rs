@@ -40,7 +40,7 @@ impl Sampling {
     }
 
     /// Returns the steps in half the height of the image.
-    pub fn steps_per_height(&self) -> u32 {
+    pub fn steps_per_half_height(&self) -> u32 {
         self.samples * self.height
     }
 
