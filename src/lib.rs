@@ -3,13 +3,14 @@
 //! The modules below stand in the order in which a scene passes them. [`source`] holds its text, [`syntax`] makes a tree
 //! of it, [`lower`] a program, the arenas and command list of [`ir`]; [`compile()`] is these steps in one call, and [`diag`]
 //! holds what they found. Behind [`ir::validate`] nothing can fail for the scene's sake: [`exec`] walks the command list,
-//! [`trace`] renders what a `write` sees with the numbers of [`math`], and [`image`] streams the rows into a PNG.
+//! [`plan`] finds out what the image of a `write` needs, [`trace`] renders that with the numbers of [`math`], and [`image`]
+//! streams the rows into a PNG.
 //!
 //! The library neither prints nor reads files nor looks at the clock; where images go and who watches are parameters.
 //!
 //! ```
 //! use clisc::exec::{CancellationToken, MemorySink, Options, execute};
-//! use clisc::{compile, image::decode_png, ir, source::Source, trace::Settings};
+//! use clisc::{compile, image::decode_png, ir, plan::Settings, source::Source};
 //!
 //! let text = "fov 60\nlight 1 1 1  0 0 5\nsurface 0 0 0  1 0 0  0 0 0  1 0\nsphere 0 0 -4 1\nwrite ball.png\n";
 //! let compilation = compile(&Source::new("ball.cli", text));
@@ -42,6 +43,8 @@ pub mod ir;
 pub mod math;
 
 pub mod image;
+
+pub mod plan;
 
 pub mod trace;
 

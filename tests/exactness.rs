@@ -14,8 +14,9 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use clisc::ir::{self, Registers, SceneView};
+use clisc::plan::{Part, SampleAt, Settings, Size, plan};
 use clisc::source::Source;
-use clisc::trace::{Part, SampleAt, Settings, Size, Tracer};
+use clisc::trace::Tracer;
 
 use families::sketch::Sketch;
 use families::{FAMILIES, FINEST, Family};
@@ -48,7 +49,7 @@ fn sized([width, height]: [u32; 2]) -> Settings {
 fn trace(view: SceneView<'_>, settings: &Settings) -> Vec<[u8; 3]> {
     let [width, height] = [settings.size.width(), settings.size.height()];
     let mut rgb = vec![0; width as usize * height as usize * 3];
-    Tracer::new(view, settings).render_rows(0..height, &mut rgb);
+    Tracer::new(plan(view, settings)).render_rows(0..height, &mut rgb);
     rgb.as_chunks().0.to_vec()
 }
 

@@ -12,8 +12,9 @@ use clisc::exec::{
 };
 use clisc::image::decode_png;
 use clisc::ir::{self, Command, Program, Registers, SceneView, Valid};
+use clisc::plan::{Settings, Size, plan};
 use clisc::source::Span;
-use clisc::trace::{Settings, Size, Tracer};
+use clisc::trace::Tracer;
 use glam::DVec3;
 
 const RED: Command = Command::Background(DVec3::new(1.0, 0.0, 0.0));
@@ -84,7 +85,7 @@ fn bands_and_threads_leave_no_trace_in_the_image() {
     let mut registers = Registers::default();
     program.commands.iter().for_each(|command| registers.step(command));
     let mut whole = vec![0; 1500 * 1001 * 3];
-    Tracer::new(SceneView::new(&program, registers), &settings).render_rows(0..1001, &mut whole);
+    Tracer::new(plan(SceneView::new(&program, registers), &settings)).render_rows(0..1001, &mut whole);
     let mut files = Vec::new();
     for n_threads in [1, 2, 5] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(n_threads).build().unwrap();

@@ -17,9 +17,10 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("ir", &["math", "source"]),
     ("lower", &["syntax", "ir", "diag", "source", "math"]),
     ("compile", &["source", "diag", "syntax", "lower", "ir"]),
-    ("trace", &["ir", "math", "image"]),
-    ("exec", &["ir", "trace", "image", "diag"]),
-    ("testing", &["source", "diag", "math", "image", "syntax", "ir", "lower", "compile", "trace", "exec"]),
+    ("plan", &["ir", "math"]),
+    ("trace", &["ir", "plan", "math", "image"]),
+    ("exec", &["ir", "plan", "trace", "image", "diag"]),
+    ("testing", &["source", "diag", "math", "image", "syntax", "ir", "lower", "compile", "plan", "trace", "exec"]),
 ];
 
 fn root() -> &'static Path {

@@ -12,8 +12,8 @@ use std::path::{Path, PathBuf};
 use clisc::exec::{CancellationToken, MemorySink, Options, execute};
 use clisc::image::{RgbImage, compare, compare_rows, decode_png, difference_image, encode_png};
 use clisc::ir::{self, Command};
+use clisc::plan::{Part, SampleAt, Settings, Size};
 use clisc::source::Source;
-use clisc::trace::{Part, SampleAt, Settings, Size};
 use serde::{Deserialize, Serialize};
 
 /// The size of a new golden image.
@@ -94,7 +94,7 @@ impl RenderOptions {
         };
         let usual = Settings::default();
         let (samples, max_level) = (self.samples.unwrap_or(usual.samples), self.max_level.unwrap_or(usual.max_level));
-        Settings { size, part, samples, sample_at, max_level }
+        Settings { size, part, samples, sample_at, max_level, ..Settings::default() }
     }
 }
 

@@ -6,8 +6,9 @@ use std::ops::Range;
 
 use clisc::compile;
 use clisc::ir::{self, Registers, SceneView};
+use clisc::plan::{Part, Settings, Size, plan};
 use clisc::source::Source;
-use clisc::trace::{Part, Settings, Size, Tracer};
+use clisc::trace::Tracer;
 
 use families::FAMILIES;
 use families::sketch::{Finish, Sketch};
@@ -24,7 +25,7 @@ fn settings() -> Settings {
 
 fn render_rows(view: SceneView<'_>, rows: Range<u32>) -> Vec<u8> {
     let mut rgb = vec![0; rows.len() * WIDTH as usize * 3];
-    Tracer::new(view, &settings()).render_rows(rows, &mut rgb);
+    Tracer::new(plan(view, &settings())).render_rows(rows, &mut rgb);
     rgb
 }
 
@@ -131,7 +132,7 @@ fn an_endless_pillar_out_of_sight_changes_nothing() {
         let mut registers = Registers::default();
         program.commands.iter().for_each(|command| registers.step(command));
         let mut rgb = vec![0; (WIDTH * HEIGHT * 3) as usize];
-        Tracer::new(SceneView::new(program, registers), &Settings { part, ..settings() })
+        Tracer::new(plan(SceneView::new(program, registers), &Settings { part, ..settings() }))
             .render_rows(0..HEIGHT, &mut rgb);
         rgb
     };
@@ -152,7 +153,7 @@ fn a_cancelled_render_traces_no_further_pixel() {
     let program = ir::validate(compile(&Source::new("empty.cli", "write a.png\n")).program).expect("a sound program");
     let view = SceneView::new(&program, Registers::default());
     let mut rgb = vec![0; (WIDTH * HEIGHT * 3) as usize];
-    let counts = Tracer::new(view, &settings()).render_rows_unless(0..HEIGHT, &mut rgb, &|| true);
+    let counts = Tracer::new(plan(view, &settings())).render_rows_unless(0..HEIGHT, &mut rgb, &|| true);
     assert_eq!(counts.eye_rays, 0);
 }
 

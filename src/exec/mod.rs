@@ -23,7 +23,7 @@ use std::io;
 use crate::diag::Diagnostic;
 use crate::exec::write::Write;
 use crate::ir::{Command, Registers, SceneView, Valid};
-use crate::trace::Settings;
+use crate::plan::Settings;
 
 /// How to execute a program.
 #[derive(Clone, Copy)]

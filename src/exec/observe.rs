@@ -2,7 +2,8 @@
 
 use std::time::Duration;
 
-use crate::trace::{Counts, Size};
+use crate::plan::Size;
+use crate::trace::Counts;
 
 /// Watches an execution. Called from the thread that executes, except for the clock; `()` watches nothing.
 pub trait Observer: Sync {

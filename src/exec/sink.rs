@@ -5,7 +5,7 @@ use std::io;
 use std::path::PathBuf;
 
 use crate::exec::Refusal;
-use crate::trace::Size;
+use crate::plan::Size;
 
 /// Takes the images of a program.
 ///

@@ -7,7 +7,8 @@ use std::time::Duration;
 use crate::exec::{Event, ExecError, ImageRequest, Options, Sink, SinkError, WriteReport};
 use crate::image::PngStream;
 use crate::ir::{SceneView, Valid};
-use crate::trace::{Counts, Settings, Tracer};
+use crate::plan::{Settings, plan};
+use crate::trace::{Counts, Tracer};
 
 /// The most bytes of pixels in one band; two bands are in memory at a time.
 const BAND_BYTES: u64 = 4 << 20;
@@ -40,7 +41,7 @@ impl Write<'_> {
         self.check_cancelled()?;
         let file = sink.create(&ImageRequest { name: self.name, size }).map_err(|error| self.sink_error(error))?;
         let mut report = self.new_report();
-        let file = self.stream(&Tracer::new(view, settings), file, &mut report)?;
+        let file = self.stream(&Tracer::new(plan(view, settings)), file, &mut report)?;
         let (saved, save_time) = self.timed(|| sink.commit(file));
         saved.map_err(|error| self.sink_error(error))?;
         report.save_time = save_time;
@@ -168,7 +169,7 @@ impl<F: io::Write> io::Write for Counted<F> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::trace::Size;
+    use crate::plan::Size;
 
     fn band(width: u32, height: u32, samples: u32) -> BandSize {
         let size = Size::new(width, height).unwrap();

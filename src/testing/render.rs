@@ -8,8 +8,9 @@ use crate::compile;
 use crate::exec::{CancellationToken, ExecError, MemorySink, Options, execute};
 use crate::image::decode_png;
 use crate::ir::{Command, Registers, SceneView, Valid, validate};
+use crate::plan::{Part, SampleAt, Settings, Size, plan};
 use crate::source::Source;
-use crate::trace::{Part, SampleAt, Settings, Size, Tracer};
+use crate::trace::Tracer;
 
 /// Lines that are read; more would make a run slow.
 const MAX_LINES: usize = 48;
@@ -56,7 +57,7 @@ fn assert_cuts_agree(program: &Valid, settings: &Settings) {
     for command in &program.commands {
         registers.step(command);
         if let Command::Write(name) = command {
-            let tracer = Tracer::new(SceneView::new(program, registers), settings);
+            let tracer = Tracer::new(plan(SceneView::new(program, registers), settings));
             let mut image = vec![0; (WIDTH * HEIGHT * 3) as usize];
             tracer.render_rows(0..HEIGHT, &mut image);
             let mut by_row = vec![0; image.len()];

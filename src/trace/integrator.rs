@@ -1,17 +1,15 @@
 //! The colour of an eye ray: from hit to hit along the mirror directions, and back.
 
 use crate::math::{Real, Vector};
+use crate::plan::{Candidates, Part, Plan};
 use crate::trace::judge::{Doubt, Judge};
 use crate::trace::ray::{Leaving, Ray};
-use crate::trace::scene::Scene;
 use crate::trace::shade::HitPoint;
-use crate::trace::{Part, Settings};
 
 /// Follows rays through one scene, in one arithmetic.
 #[derive(Debug)]
 pub struct Integrator<'a, 'p, R> {
-    pub(super) scene: &'a Scene<'p>,
-    pub(super) settings: &'a Settings,
+    pub(super) plan: &'a Plan<'p>,
     /// Decides comparisons and counts.
     pub judge: Judge,
     /// The primitives that the kernels kept for the ray at hand.
@@ -37,22 +35,25 @@ enum End<R> {
 
 impl<'a, 'p, R: Real> Integrator<'a, 'p, R> {
     /// Makes an integrator that has counted nothing yet.
-    pub fn new(scene: &'a Scene<'p>, settings: &'a Settings) -> Self {
-        Self { scene, settings, judge: Judge::default(), kept: Vec::new(), bounces: Vec::new() }
+    pub fn new(plan: &'a Plan<'p>) -> Self {
+        Self { plan, judge: Judge::default(), kept: Vec::new(), bounces: Vec::new() }
     }
 
     /// Returns the colour of an eye ray, each channel clamped to 0…1.
     ///
+    /// `among`: what the eye ray can meet.
+    ///
     /// # Errors
     /// [`Doubt`] when a comparison at the first hit cannot be decided. Behind a mirror a doubt becomes a colour that may
     /// be anything: whether it matters is seen when the channel is rounded.
-    pub fn color(&mut self, eye_ray: Ray<R>) -> Result<Vector<R>, Doubt> {
+    pub fn color(&mut self, eye_ray: Ray<R>, among: Candidates<'_>) -> Result<Vector<R>, Doubt> {
         self.judge.counts.eye_rays += 1;
         self.bounces.clear();
         let mut ray = eye_ray;
         let last = loop {
             let level = self.bounces.len();
-            match self.follow(&ray, level as u32) {
+            let among = if level == 0 { among } else { self.plan.mirrored() };
+            match self.follow(&ray, level as u32, among) {
                 Ok(End::Color(color)) => break color,
                 Ok(End::Mirror(bounce, reflected)) => {
                     self.bounces.push(bounce);
@@ -69,20 +70,20 @@ impl<'a, 'p, R: Real> Integrator<'a, 'p, R> {
         Ok(self.bounces.iter().rev().fold(last.map(R::clamp_unit), through))
     }
 
-    /// Follows one ray to the first surface it meets.
-    fn follow(&mut self, ray: &Ray<R>, level: u32) -> Result<End<R>, Doubt> {
-        let background = Vector::exact(self.scene.background);
-        if level > self.settings.max_level {
+    /// Follows one ray to the first of the candidates that it meets.
+    fn follow(&mut self, ray: &Ray<R>, level: u32, among: Candidates<'_>) -> Result<End<R>, Doubt> {
+        let background = Vector::exact(self.plan.scene.background);
+        if level > self.plan.settings.max_level {
             let black = Vector::exact(glam::DVec3::ZERO);
-            return Ok(End::Color(if self.meets_anything(ray)? { black } else { background }));
+            return Ok(End::Color(if self.meets_anything(ray, among)? { black } else { background }));
         }
-        let Some(hit) = self.intersect(ray)? else {
+        let Some(hit) = self.intersect(ray, among)? else {
             return Ok(End::Color(background));
         };
-        let at = HitPoint::new(self.scene, ray, &hit);
+        let at = HitPoint::new(&self.plan.scene, ray, &hit);
         let local = self.shade(&at)?;
         let reflectance = at.surface.reflectance;
-        if self.settings.part == Part::A || reflectance <= 0.0 {
+        if self.plan.settings.part == Part::A || reflectance <= 0.0 {
             return Ok(End::Color(local));
         }
         Ok(End::Mirror(Bounce { local, reflectance }, reflect(ray, &at)))

@@ -13,11 +13,11 @@
 use std::cmp::Ordering;
 
 use crate::math::{Real, Vector};
+use crate::plan::{Candidates, Scene};
 use crate::trace::integrator::Integrator;
 use crate::trace::judge::{Doubt, Judge};
 use crate::trace::kernels::scalar;
 use crate::trace::ray::{Face, Hit, Leaving, Ray};
-use crate::trace::scene::Scene;
 
 /// A meeting with a sphere or with the infinite wall of a cylinder.
 #[derive(Clone, Copy)]
@@ -44,13 +44,13 @@ struct Quadric<R> {
 }
 
 impl<R: Real> Integrator<'_, '_, R> {
-    /// Finds the nearest hit; of hits at equal t the one declared first.
+    /// Finds the nearest hit on one of the candidates; of hits at equal t the one declared first.
     ///
     /// # Errors
     /// [`Doubt`] when it cannot be decided which that is.
-    pub(super) fn intersect(&mut self, ray: &Ray<R>) -> Result<Option<Hit<R>>, Doubt> {
+    pub(super) fn intersect(&mut self, ray: &Ray<R>, among: Candidates<'_>) -> Result<Option<Hit<R>>, Doubt> {
         let mut nearest: Option<(Hit<R>, u32)> = None;
-        self.visit_hits(ray, |judge, hit, order| {
+        self.visit_hits(ray, among, |judge, hit, order| {
             let replaces = match &nearest {
                 None => true,
                 Some((best, best_order)) => match judge.compare_zero(best.t - hit.t)? {
@@ -67,39 +67,40 @@ impl<R: Real> Integrator<'_, '_, R> {
         Ok(nearest.map(|(hit, _)| hit))
     }
 
-    /// Tells whether a surface is met with 0 < t < 1.
+    /// Tells whether one of the candidates is met with 0 < t < 1.
     ///
     /// # Errors
     /// [`Doubt`] when it cannot be decided.
-    pub(super) fn occluded(&mut self, ray: &Ray<R>) -> Result<bool, Doubt> {
-        self.visit_hits(ray, |judge, hit, _| judge.is_positive(R::exact(1.0) - hit.t))
+    pub(super) fn occluded(&mut self, ray: &Ray<R>, among: Candidates<'_>) -> Result<bool, Doubt> {
+        self.visit_hits(ray, among, |judge, hit, _| judge.is_positive(R::exact(1.0) - hit.t))
     }
 
-    /// Tells whether a surface is met at all.
+    /// Tells whether one of the candidates is met at all.
     ///
     /// # Errors
     /// [`Doubt`] when it cannot be decided.
-    pub(super) fn meets_anything(&mut self, ray: &Ray<R>) -> Result<bool, Doubt> {
-        self.visit_hits(ray, |_, _, _| Ok(true))
+    pub(super) fn meets_anything(&mut self, ray: &Ray<R>, among: Candidates<'_>) -> Result<bool, Doubt> {
+        self.visit_hits(ray, among, |_, _, _| Ok(true))
     }
 
-    /// Calls `visit` with the nearest hit on each primitive until it answers `true`, and tells whether it did.
+    /// Calls `visit` with the nearest hit on each candidate until it answers `true`, and tells whether it did.
     ///
     /// A doubt is put off: it is returned only if no other primitive makes `visit` answer `true`.
     fn visit_hits(
         &mut self,
         ray: &Ray<R>,
+        among: Candidates<'_>,
         mut visit: impl FnMut(&mut Judge, Hit<R>, u32) -> Result<bool, Doubt>,
     ) -> Result<bool, Doubt> {
-        let scene = self.scene;
+        let scene = &self.plan.scene;
         let kernel_ray = ray.for_kernel();
         let mut doubt = None;
-        self.judge.counts.tests += scene.sphere_primitives.len() as u64 + scene.cylinder_primitives.len() as u64;
+        self.judge.counts.tests += among.len() as u64;
 
         self.kept.clear();
-        scalar::keep_spheres(&kernel_ray, &scene.spheres, &mut self.kept);
+        scalar::keep_spheres(&kernel_ray, &scene.spheres, among.spheres, &mut self.kept);
         let n_spheres = self.kept.len();
-        scalar::keep_cylinders(&kernel_ray, &scene.cylinders, &mut self.kept);
+        scalar::keep_cylinders(&kernel_ray, &scene.cylinders, among.cylinders, &mut self.kept);
 
         for (k, &i) in self.kept.iter().enumerate() {
             let (hit, primitive) = if k < n_spheres {

@@ -1,10 +1,12 @@
 //! One pixel: its samples, their mean, its three bytes.
 
-use crate::math::{Real, Vector};
+use glam::DVec3;
+
+use crate::math::{Ball64, Real, Vector};
+use crate::plan::{Candidates, SampleAt, Settings};
 use crate::trace::camera::Camera;
 use crate::trace::integrator::Integrator;
-use crate::trace::judge::Doubt;
-use crate::trace::{SampleAt, Settings};
+use crate::trace::judge::{Doubt, Judge};
 
 /// Added before rounding down, so that a decimal such as 0.6 = 153/255 gives 153. The semantics fix it at 2⁻²⁰.
 const QUANTISATION_BIAS: f64 = 1.0 / 1_048_576.0;
@@ -60,26 +62,39 @@ impl Sampling {
 
 /// Traces a pixel and returns its bytes, red, green, blue.
 ///
+/// `among`: what its eye rays can meet.
+///
 /// # Errors
 /// [`Doubt`] when this arithmetic cannot decide a comparison on the way, or a channel.
 pub fn settle<R: Real>(
     integrator: &mut Integrator<'_, '_, R>,
     camera: &Camera<R>,
     pixel: &Pixel,
+    among: Candidates<'_>,
 ) -> Result<[u8; 3], Doubt> {
     let n = i64::from(pixel.samples);
     let mut sum = Vector::exact(glam::DVec3::ZERO);
     for row in 0..n {
         for column in 0..n {
             let ray = camera.eye_ray(pixel.left + 2 * column, pixel.top - 2 * row);
-            sum = sum + integrator.color(ray)?;
+            sum = sum + integrator.color(ray, among)?;
         }
     }
     let mean = if n == 1 { sum } else { sum.map(|channel| channel / R::exact((n * n) as f64)) };
+    quantise(&mut integrator.judge, mean)
+}
+
+/// Returns the bytes of a colour that is known exactly; `None` when binary64 cannot decide one of them.
+pub fn bytes_of(color: DVec3) -> Option<[u8; 3]> {
+    quantise(&mut Judge::default(), Vector::<Ball64>::exact(color).map(Ball64::clamp_unit)).ok()
+}
+
+/// Returns the bytes of a colour whose channels lie in 0…1.
+fn quantise<R: Real>(judge: &mut Judge, color: Vector<R>) -> Result<[u8; 3], Doubt> {
     let mut bytes = [0; 3];
-    for (byte, channel) in bytes.iter_mut().zip(mean.to_array()) {
+    for (byte, channel) in bytes.iter_mut().zip(color.to_array()) {
         let scaled = channel * R::exact(255.0) + R::exact(QUANTISATION_BIAS);
-        *byte = integrator.judge.floor(scaled)? as u8;
+        *byte = judge.floor(scaled)? as u8;
     }
     Ok(bytes)
 }

@@ -2,6 +2,7 @@
 
 use crate::ir::EquationId;
 use crate::math::{Real, Vector};
+use crate::plan::Object;
 use crate::trace::kernels::KernelRay;
 
 /// A half-line: the points origin + t·dir with t > 0.
@@ -56,6 +57,16 @@ pub enum Face {
     LowerCap(u32),
     /// The upper cap of a cylinder.
     UpperCap(u32),
+}
+
+impl Face {
+    /// Returns the object that the face belongs to.
+    pub fn object(self) -> Object {
+        match self {
+            Self::Sphere(i) => Object::Sphere(i),
+            Self::Wall(i) | Self::LowerCap(i) | Self::UpperCap(i) => Object::Cylinder(i),
+        }
+    }
 }
 
 /// The nearest point of a ray on a surface.

@@ -4,11 +4,10 @@ use glam::DVec3;
 
 use crate::ir::{EquationId, Surface};
 use crate::math::{Real, Vector};
-use crate::trace::Part;
+use crate::plan::{Light, Object, Part, Scene};
 use crate::trace::integrator::Integrator;
 use crate::trace::judge::Doubt;
 use crate::trace::ray::{Face, Hit, Leaving, Ray};
-use crate::trace::scene::{Light, Scene};
 
 /// A hit with all that shading needs.
 #[derive(Debug)]
@@ -21,6 +20,8 @@ pub struct HitPoint<'p, R> {
     pub incoming: Vector<R>,
     /// Whether it is met from inside.
     pub from_inside: bool,
+    /// What is met.
+    pub object: Object,
     /// The equation of the surface.
     pub equation: EquationId,
     /// How it answers light.
@@ -60,7 +61,15 @@ impl<'p, R: Real> HitPoint<'p, R> {
         };
         let normal = if hit.from_inside { outward.map(|coordinate| -coordinate) } else { outward };
         let surface = scene.surface(primitive);
-        Self { point, normal, incoming: ray.dir, from_inside: hit.from_inside, equation, surface }
+        Self {
+            point,
+            normal,
+            incoming: ray.dir,
+            from_inside: hit.from_inside,
+            object: hit.face.object(),
+            equation,
+            surface,
+        }
     }
 }
 
@@ -70,31 +79,32 @@ impl<R: Real> Integrator<'_, '_, R> {
     /// # Errors
     /// [`Doubt`] when it cannot be decided whether a light is lit.
     pub(super) fn shade(&mut self, at: &HitPoint<'_, R>) -> Result<Vector<R>, Doubt> {
-        let ambient = match self.settings.part {
+        let ambient = match self.plan.settings.part {
             Part::A => DVec3::ZERO,
             Part::B => at.surface.ambient,
         };
         let mut color = Vector::exact(ambient);
-        if !answers_light(at.surface, self.settings.part) {
+        if !answers_light(at.surface, self.plan.settings.part) {
             return Ok(color);
         }
-        for light in &self.scene.lights {
+        for (light_idx, light) in self.plan.scene.lights.iter().enumerate() {
             let to_light = Vector::exact(light.position) - at.point;
-            if self.judge.is_positive(at.normal.dot(to_light))? && !self.is_shadowed(at, to_light)? {
-                color = color + lit_by(at, light, to_light, self.settings.part);
+            if self.judge.is_positive(at.normal.dot(to_light))? && !self.is_shadowed(at, light_idx, to_light)? {
+                color = color + lit_by(at, light, to_light, self.plan.settings.part);
             }
         }
         Ok(color)
     }
 
     /// Tells whether a surface is met on the way to a light.
-    fn is_shadowed(&mut self, at: &HitPoint<'_, R>, to_light: Vector<R>) -> Result<bool, Doubt> {
-        if self.settings.part == Part::A {
+    fn is_shadowed(&mut self, at: &HitPoint<'_, R>, light_idx: usize, to_light: Vector<R>) -> Result<bool, Doubt> {
+        if self.plan.settings.part == Part::A {
             return Ok(false);
         }
         self.judge.counts.shadow_rays += 1;
         let leaving = Leaving { equation: at.equation, inward: at.from_inside };
-        self.occluded(&Ray { origin: at.point, dir: to_light, leaving: Some(leaving) })
+        let among = self.plan.occluders(at.object, light_idx);
+        self.occluded(&Ray { origin: at.point, dir: to_light, leaving: Some(leaving) }, among)
     }
 }
 

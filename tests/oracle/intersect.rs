@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use clisc::trace::Part;
+use clisc::plan::Part;
 
 use super::ball::Ball;
 use super::reach::ApproxRay;

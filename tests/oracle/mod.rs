@@ -23,7 +23,7 @@ mod vec3;
 use std::sync::OnceLock;
 
 use clisc::ir::SceneView;
-use clisc::trace::Settings;
+use clisc::plan::Settings;
 use rayon::prelude::*;
 
 pub use self::tie::{Tie, Ties};

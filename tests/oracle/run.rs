@@ -3,7 +3,7 @@
 use std::cell::Cell;
 use std::cmp::Ordering;
 
-use clisc::trace::{Part, SampleAt, Settings};
+use clisc::plan::{Part, SampleAt, Settings};
 
 use super::Pixel;
 use super::ball::Ball;

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
-use clisc::trace::{self, Settings, Size};
+use clisc::plan::{self, Passes, Settings, Size};
 
 /// Compiles and renders `.cli` scenes.
 #[derive(Debug, Parser)]
@@ -131,6 +131,7 @@ impl RunArgs {
             samples: self.samples,
             sample_at: self.sample_at.into(),
             max_level: self.max_level,
+            passes: Passes::all(),
         }
     }
 }
@@ -145,7 +146,7 @@ pub enum Part {
     B,
 }
 
-impl From<Part> for trace::Part {
+impl From<Part> for plan::Part {
     fn from(part: Part) -> Self {
         match part {
             Part::A => Self::A,
@@ -165,7 +166,7 @@ pub enum SampleAt {
     Centre,
 }
 
-impl From<SampleAt> for trace::SampleAt {
+impl From<SampleAt> for plan::SampleAt {
     fn from(at: SampleAt) -> Self {
         match at {
             SampleAt::Corner => Self::Corner,

@@ -26,31 +26,3 @@ pub struct KernelRay {
     /// A bound on the error of each coordinate of the direction.
     pub dir_error: f64,
 }
-
-/// Spheres, coordinate by coordinate.
-#[derive(Clone, Debug, Default)]
-pub struct SphereLanes {
-    /// Centres, x.
-    pub x: Vec<f64>,
-    /// Centres, y.
-    pub y: Vec<f64>,
-    /// Centres, z.
-    pub z: Vec<f64>,
-    /// Radii.
-    pub radius: Vec<f64>,
-}
-
-/// Cylinders, coordinate by coordinate.
-#[derive(Clone, Debug, Default)]
-pub struct CylinderLanes {
-    /// Axes, x.
-    pub x: Vec<f64>,
-    /// Axes, z.
-    pub z: Vec<f64>,
-    /// Radii.
-    pub radius: Vec<f64>,
-    /// Lower caps.
-    pub y_min: Vec<f64>,
-    /// Upper caps.
-    pub y_max: Vec<f64>,
-}

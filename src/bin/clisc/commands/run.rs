@@ -16,9 +16,9 @@ use clisc::diag::render::{Color, render_human};
 use clisc::exec::{CancellationToken, ExecError, Options, check_names, execute};
 use clisc::ir::{self, Command, Valid};
 use clisc::lower::lower;
+use clisc::plan::Settings;
 use clisc::source::Source;
 use clisc::syntax::parse;
-use clisc::trace::Settings;
 
 use self::reporter::Reporter;
 use self::stats::{SceneStats, StatsReport};

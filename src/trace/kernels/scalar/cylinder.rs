@@ -1,10 +1,11 @@
 //! Rejects cylinders: a line that misses the infinite wall misses the caps too.
 
+use crate::plan::CylinderLanes;
 use crate::trace::kernels::scalar::{Offsets, leads_away, line_misses};
-use crate::trace::kernels::{CylinderLanes, KernelRay, ROUNDOFF};
+use crate::trace::kernels::{KernelRay, ROUNDOFF};
 
-/// Appends to `kept` the indices of the cylinders that the ray may meet, in order.
-pub fn keep_cylinders(ray: &KernelRay, cylinders: &CylinderLanes, kept: &mut Vec<u32>) {
+/// Appends to `kept` those of the cylinders `among` that the ray may meet, in order.
+pub fn keep_cylinders(ray: &KernelRay, cylinders: &CylinderLanes, among: &[u32], kept: &mut Vec<u32>) {
     let n_cylinders = cylinders.radius.len();
     let (xs, zs, radii) = (&cylinders.x[..n_cylinders], &cylinders.z[..n_cylinders], &cylinders.radius);
     let [ox, oy, oz] = ray.origin;
@@ -14,7 +15,8 @@ pub fn keep_cylinders(ray: &KernelRay, cylinders: &CylinderLanes, kept: &mut Vec
     let y_slack = if ray.origin_y_error == 0.0 { 0.0 } else { ray.origin_y_error + 4.0 * ROUNDOFF * oy.abs() };
     let (bottom, top) = (oy - y_slack, oy + y_slack);
     let (falls, rises) = (dy < -ray.dir_error, dy > ray.dir_error);
-    for i in 0..n_cylinders {
+    for &idx in among {
+        let i = idx as usize;
         // A ray that rises from the upper cap leaves it at once; only its start, which is no hit, has that height.
         if (falls && top <= cylinders.y_min[i]) || (rises && bottom >= cylinders.y_max[i]) {
             continue;
@@ -27,6 +29,6 @@ pub fn keep_cylinders(ray: &KernelRay, cylinders: &CylinderLanes, kept: &mut Vec
         {
             continue;
         }
-        kept.push(i as u32);
+        kept.push(idx);
     }
 }

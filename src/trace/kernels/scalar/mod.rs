@@ -69,8 +69,8 @@ fn leads_away(ray: &KernelRay, offsets: &Offsets, along: f64, distance_squared: 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plan::{CylinderLanes, SphereLanes};
     use crate::testing::Stream;
-    use crate::trace::kernels::{CylinderLanes, SphereLanes};
 
     fn vector(stream: &mut Stream) -> [f64; 3] {
         [(); 3].map(|()| stream.between(-1.0, 1.0))
@@ -110,7 +110,7 @@ mod tests {
             let ray = grazing_ray(&mut stream, center, radius, 1.0, error);
             let [x, y, z] = center.map(|c| vec![c]);
             let mut kept = Vec::new();
-            keep_spheres(&ray, &SphereLanes { x, y, z, radius: vec![radius] }, &mut kept);
+            keep_spheres(&ray, &SphereLanes { x, y, z, radius: vec![radius] }, &[0], &mut kept);
             assert_eq!(kept, [0], "{ray:?} {center:?} {radius}");
         }
     }
@@ -123,7 +123,7 @@ mod tests {
             let ray = grazing_ray(&mut stream, center, 1.0, 1.0 + 1e-9, 1e-15);
             let [x, y, z] = center.map(|c| vec![c]);
             let mut kept = Vec::new();
-            keep_spheres(&ray, &SphereLanes { x, y, z, radius: vec![1.0] }, &mut kept);
+            keep_spheres(&ray, &SphereLanes { x, y, z, radius: vec![1.0] }, &[0], &mut kept);
             assert!(kept.is_empty(), "{ray:?} {center:?}");
         }
     }
@@ -133,7 +133,7 @@ mod tests {
         let toward_minus_z = ray([0.0; 3], [0.1, 0.0, -1.0], 0.0);
         let spheres = SphereLanes { x: vec![0.0; 2], y: vec![0.0; 2], z: vec![3.0, 3.0], radius: vec![1.0, 4.0] };
         let mut kept = Vec::new();
-        keep_spheres(&toward_minus_z, &spheres, &mut kept);
+        keep_spheres(&toward_minus_z, &spheres, &[0, 1], &mut kept);
         assert_eq!(kept, [1]);
 
         let cylinders = CylinderLanes {
@@ -144,7 +144,7 @@ mod tests {
             y_max: vec![1.0, 1.0, 1.0, 1.0],
         };
         kept.clear();
-        keep_cylinders(&ray([0.0; 3], [0.1, -0.1, -1.0], 0.0), &cylinders, &mut kept);
+        keep_cylinders(&ray([0.0; 3], [0.1, -0.1, -1.0], 0.0), &cylinders, &[0, 1, 2, 3], &mut kept);
         assert_eq!(kept, [1, 2], "behind; around; ahead; ahead but above a ray that falls");
     }
 
@@ -153,7 +153,7 @@ mod tests {
         let cylinders =
             CylinderLanes { x: vec![0.0], z: vec![-3.0], radius: vec![1.0], y_min: vec![-1.0], y_max: vec![0.0] };
         let mut kept = Vec::new();
-        keep_cylinders(&ray([0.0; 3], [0.0, 0.0, -1.0], 0.0), &cylinders, &mut kept);
+        keep_cylinders(&ray([0.0; 3], [0.0, 0.0, -1.0], 0.0), &cylinders, &[0], &mut kept);
         assert_eq!(kept, [0]);
     }
 }

@@ -1,10 +1,11 @@
 //! Rejects spheres.
 
+use crate::plan::SphereLanes;
+use crate::trace::kernels::KernelRay;
 use crate::trace::kernels::scalar::{Offsets, leads_away, line_misses};
-use crate::trace::kernels::{KernelRay, SphereLanes};
 
-/// Appends to `kept` the indices of the spheres that the ray may meet, in order.
-pub fn keep_spheres(ray: &KernelRay, spheres: &SphereLanes, kept: &mut Vec<u32>) {
+/// Appends to `kept` those of the spheres `among` that the ray may meet, in order.
+pub fn keep_spheres(ray: &KernelRay, spheres: &SphereLanes, among: &[u32], kept: &mut Vec<u32>) {
     let n_spheres = spheres.radius.len();
     let (xs, ys, zs, radii) =
         (&spheres.x[..n_spheres], &spheres.y[..n_spheres], &spheres.z[..n_spheres], &spheres.radius);
@@ -12,7 +13,8 @@ pub fn keep_spheres(ray: &KernelRay, spheres: &SphereLanes, kept: &mut Vec<u32>)
     let [dx, dy, dz] = ray.dir;
     let dir = dx.abs() + dy.abs() + dz.abs();
     let dir_squared = dx * dx + dy * dy + dz * dz;
-    for i in 0..n_spheres {
+    for &idx in among {
+        let i = idx as usize;
         let (mx, my, mz) = (xs[i] - ox, ys[i] - oy, zs[i] - oz);
         let offsets = Offsets::new(ray, mx.abs() + my.abs() + mz.abs(), dir);
         let (cx, cy, cz) = (my * dz - mz * dy, mz * dx - mx * dz, mx * dy - my * dx);
@@ -23,6 +25,6 @@ pub fn keep_spheres(ray: &KernelRay, spheres: &SphereLanes, kept: &mut Vec<u32>)
         {
             continue;
         }
-        kept.push(i as u32);
+        kept.push(idx);
     }
 }

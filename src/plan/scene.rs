@@ -1,10 +1,37 @@
-//! The scene of one image, laid out for the kernels and scaled so that no square overflows.
+//! The scene of one image, laid out in lanes and scaled so that no square overflows.
 
 use glam::DVec3;
 
 use crate::ir::{self, EquationId, SceneView};
-use crate::trace::Part;
-use crate::trace::kernels::{CylinderLanes, SphereLanes};
+use crate::plan::Part;
+
+/// Spheres, coordinate by coordinate.
+#[derive(Clone, Debug, Default)]
+pub struct SphereLanes {
+    /// Centres, x.
+    pub x: Vec<f64>,
+    /// Centres, y.
+    pub y: Vec<f64>,
+    /// Centres, z.
+    pub z: Vec<f64>,
+    /// Radii.
+    pub radius: Vec<f64>,
+}
+
+/// Cylinders, coordinate by coordinate.
+#[derive(Clone, Debug, Default)]
+pub struct CylinderLanes {
+    /// Axes, x.
+    pub x: Vec<f64>,
+    /// Axes, z.
+    pub z: Vec<f64>,
+    /// Radii.
+    pub radius: Vec<f64>,
+    /// Lower caps.
+    pub y_min: Vec<f64>,
+    /// Upper caps.
+    pub y_max: Vec<f64>,
+}
 
 /// A light that shines.
 #[derive(Clone, Copy, Debug)]

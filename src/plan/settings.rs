@@ -1,6 +1,6 @@
-//! What a render is asked for, and what it counted.
+//! What an image is asked for.
 
-use std::ops::AddAssign;
+use crate::plan::Passes;
 
 /// The size of an image in pixels, each side 1 to 65535.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -72,6 +72,8 @@ pub struct Settings {
     pub sample_at: SampleAt,
     /// The last level that is shaded, at most [`Settings::MAX_LEVEL`]; the eye ray has level 0.
     pub max_level: u32,
+    /// What may be skipped; no pixel depends on it.
+    pub passes: Passes,
 }
 
 impl Settings {
@@ -84,34 +86,13 @@ impl Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { size: Size::default(), part: Part::B, samples: 1, sample_at: SampleAt::Corner, max_level: 8 }
-    }
-}
-
-/// What a render has done. Pixels settled twice count their rays twice.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
-pub struct Counts {
-    /// Rays from the eye.
-    pub eye_rays: u64,
-    /// Rays from a hit along the mirror direction.
-    pub reflected_rays: u64,
-    /// Rays from a hit to a light.
-    pub shadow_rays: u64,
-    /// Tests of one ray against one primitive.
-    pub tests: u64,
-    /// Pixels that binary64 could not decide and double-double did.
-    pub refined_pixels: u64,
-    /// Decisions that double-double could not make either, made by the rule for ties.
-    pub ties: u64,
-}
-
-impl AddAssign for Counts {
-    fn add_assign(&mut self, other: Self) {
-        self.eye_rays += other.eye_rays;
-        self.reflected_rays += other.reflected_rays;
-        self.shadow_rays += other.shadow_rays;
-        self.tests += other.tests;
-        self.refined_pixels += other.refined_pixels;
-        self.ties += other.ties;
+        Self {
+            size: Size::default(),
+            part: Part::B,
+            samples: 1,
+            sample_at: SampleAt::Corner,
+            max_level: 8,
+            passes: Passes::all(),
+        }
     }
 }
