@@ -71,6 +71,20 @@ fn options_of_the_render_reach_it() {
 }
 
 #[test]
+fn no_image_depends_on_what_is_skipped() {
+    let folder = Folder::with_scene(&scene("a.png"));
+    let images = ["--no-skip", "--no-skip=tiles,shadows", "--quiet"].map(|option| {
+        assert_code(&folder.clisc(&["run", "a.cli", "--size", "40x30", option]), 0);
+        folder.bytes("a.png")
+    });
+    assert!(images[0] == images[2] && images[1] == images[2]);
+    let help = folder.clisc(&["run", "--help"]).stdout;
+    for pass in ["writes", "objects", "terms", "saturation", "bounces", "shadows", "tiles"] {
+        assert_says(&help, &format!("- {pass}:"));
+    }
+}
+
+#[test]
 fn a_scene_with_errors_renders_nothing_and_the_others_are_rendered() {
     let folder = Folder::with_scene(&scene("a.png"));
     folder.put("bad.cli", "write early.png\nsphere 1 2\nwrite late.png\n");
@@ -200,6 +214,7 @@ fn usage_errors_explain_themselves() {
         (&["run", "a.cli", "--samples", "257"], "1..=256"),
         (&["run", "a.cli", "--part", "c"], "'c'"),
         (&["run", "a.cli", "--threads", "-1"], "-1"),
+        (&["run", "a.cli", "--no-skip=shadow"], "a similar value exists: 'shadows'"),
         (&["run", "a.cli", "--wat"], "--wat"),
         (&["paint"], "paint"),
     ] {

@@ -38,6 +38,20 @@ impl Pass {
             Self::Tiles => "tiles",
         }
     }
+
+    /// Returns what it skips, in a few words.
+    #[must_use]
+    pub const fn skips(self) -> &'static str {
+        match self {
+            Self::Writes => "images equal to an earlier one, and pixels that a later write cannot change",
+            Self::Objects => "objects that no ray of the image can meet",
+            Self::Terms => "lights and terms of surfaces that add nothing",
+            Self::Saturation => "lights on channels that are full",
+            Self::Bounces => "reflected rays that no longer change the pixel",
+            Self::Shadows => "objects that cannot lie between a surface and a light",
+            Self::Tiles => "objects that the eye rays of a tile cannot meet",
+        }
+    }
 }
 
 /// A set of passes.

@@ -2,8 +2,9 @@
 
 use std::path::PathBuf;
 
+use clap::builder::PossibleValue;
 use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
-use clisc::plan::{self, Passes, Settings, Size};
+use clisc::plan::{self, Pass, Passes, Settings, Size};
 
 /// Compiles and renders `.cli` scenes.
 #[derive(Debug, Parser)]
@@ -80,24 +81,12 @@ pub struct RunArgs {
     /// The folder below which images are saved; made when missing.
     #[arg(short, long, value_name = "DIR", default_value = ".")]
     pub out_dir: PathBuf,
-    /// Width and height of the images in pixels, each at most 65535.
-    #[arg(long, value_name = "WxH", default_value = "300x300", value_parser = parse_size)]
-    pub size: Size,
-    /// The rules: a, spheres with diffuse light only; b, the whole language.
-    #[arg(long, value_enum, default_value_t, hide_possible_values = true, ignore_case = true)]
-    pub part: Part,
+    /// What the images are.
+    #[command(flatten)]
+    pub image: ImageArgs,
     /// Threads to render with, at most 1024; 0 means one a core.
     #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true, value_parser = value_parser!(u16).range(..=MAX_THREADS))]
     pub threads: u16,
-    /// Samples a pixel, N by N, at most 256; smooths edges.
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u32).range(1..=i64::from(Settings::MAX_SAMPLES)))]
-    pub samples: u32,
-    /// Where in its pixel a sample lies.
-    #[arg(long, value_enum, default_value_t)]
-    pub sample_at: SampleAt,
-    /// The last level that is shaded: the eye ray has level 0, its reflection level 1, and so on; at most 65535.
-    #[arg(long, value_name = "N", default_value_t = 8, value_parser = value_parser!(u32).range(..=i64::from(Settings::MAX_LEVEL)))]
-    pub max_level: u32,
     /// Print times and counts; --stats=json prints one JSON document in place of the other results.
     #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, require_equals = true, default_missing_value = "table")]
     pub stats: Option<StatsFormat>,
@@ -118,11 +107,36 @@ Examples:
   clisc run scenes/*.cli -o out --size 1920x1080
   clisc run i1.cli --samples 4 --sample-at centre
   clisc run i1.cli --stats=json --quiet          times and counts for other programs
+  clisc run i1.cli --no-skip=shadows,tiles       the same image without two of the shortcuts
   clisc run - < i1.cli                           the scene from standard input
 
 A scene can write only below the folder of --out-dir. An image is saved whole or not at all.";
 
-impl RunArgs {
+/// What an image is asked for.
+#[derive(Args, Debug)]
+pub struct ImageArgs {
+    /// Width and height of the images in pixels, each at most 65535.
+    #[arg(long, value_name = "WxH", default_value = "300x300", value_parser = parse_size)]
+    pub size: Size,
+    /// The rules: a, spheres with diffuse light only; b, the whole language.
+    #[arg(long, value_enum, default_value_t, hide_possible_values = true, ignore_case = true)]
+    pub part: Part,
+    /// Samples a pixel, N by N, at most 256; smooths edges.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u32).range(1..=i64::from(Settings::MAX_SAMPLES)))]
+    pub samples: u32,
+    /// Where in its pixel a sample lies.
+    #[arg(long, value_enum, default_value_t)]
+    pub sample_at: SampleAt,
+    /// The last level that is shaded: the eye ray has level 0, its reflection level 1, and so on; at most 65535.
+    #[arg(long, value_name = "N", default_value_t = 8, value_parser = value_parser!(u32).range(..=i64::from(Settings::MAX_LEVEL)))]
+    pub max_level: u32,
+    /// Do all the work that clisc can prove needless, or that of the passes named, separated by commas; for comparison,
+    /// no pixel depends on it.
+    #[arg(long, value_enum, value_name = "PASS", num_args = 0.., value_delimiter = ',', require_equals = true)]
+    pub no_skip: Option<Vec<PassArg>>,
+}
+
+impl ImageArgs {
     /// Returns what every render is asked for.
     pub fn settings(&self) -> Settings {
         Settings {
@@ -131,8 +145,40 @@ impl RunArgs {
             samples: self.samples,
             sample_at: self.sample_at.into(),
             max_level: self.max_level,
-            passes: Passes::all(),
+            passes: self.passes(),
         }
+    }
+
+    /// Returns the passes that are left on.
+    fn passes(&self) -> Passes {
+        match self.no_skip.as_deref() {
+            None => Passes::all(),
+            Some([]) => Passes::none(),
+            Some(named) => named.iter().fold(Passes::all(), |passes, PassArg(pass)| passes.without(*pass)),
+        }
+    }
+}
+
+/// A pass of the plan by its name.
+#[derive(Clone, Copy, Debug)]
+pub struct PassArg(Pass);
+
+impl ValueEnum for PassArg {
+    fn value_variants<'a>() -> &'a [Self] {
+        const ALL: [PassArg; Pass::ALL.len()] = {
+            let mut all = [PassArg(Pass::ALL[0]); Pass::ALL.len()];
+            let mut i = 0;
+            while i < all.len() {
+                all[i] = PassArg(Pass::ALL[i]);
+                i += 1;
+            }
+            all
+        };
+        &ALL
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        Some(PossibleValue::new(self.0.name()).help(self.0.skips()))
     }
 }
 

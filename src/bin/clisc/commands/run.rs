@@ -35,7 +35,7 @@ pub fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
         .with_context(|| format!("cannot start {} threads", args.threads))?;
     let mut session = Session {
         args,
-        settings: args.settings(),
+        settings: args.image.settings(),
         cancellation: interrupt::token()?,
         sink: DiskSink::new(&args.out_dir),
         writers: HashMap::new(),
