@@ -25,3 +25,10 @@ impl CancellationToken {
         self.0.load(Ordering::Relaxed)
     }
 }
+
+impl From<Arc<AtomicBool>> for CancellationToken {
+    /// Makes the token of a flag that something else sets too, a signal handler say.
+    fn from(flag: Arc<AtomicBool>) -> Self {
+        Self(flag)
+    }
+}

@@ -24,25 +24,30 @@ use self::reporter::Reporter;
 use self::stats::{SceneStats, StatsReport};
 use crate::args::{RunArgs, StatsFormat};
 use crate::disk::{self, DiskSink};
+use crate::interrupt::Interrupts;
 use crate::outcome::Outcome;
-use crate::{input, interrupt, print};
+use crate::{input, print};
 
 /// Renders scenes and saves their images. A fault in one scene does not keep the others from being rendered.
 pub fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
-    let pool = rayon::ThreadPoolBuilder::new()
+    // The main thread is one of them: with one thread none is started, and work begins before the others are awake.
+    rayon::ThreadPoolBuilder::new()
         .num_threads(args.threads.into())
-        .build()
+        .use_current_thread()
+        .build_global()
         .with_context(|| format!("cannot start {} threads", args.threads))?;
+    let interrupts = Interrupts::listen()?;
     let mut session = Session {
         args,
         settings: args.image.settings(),
-        cancellation: interrupt::token()?,
+        cancellation: interrupts.token(),
+        interrupts,
         sink: DiskSink::new(&args.out_dir),
         writers: HashMap::new(),
     };
-    let mut report = StatsReport::new(pool.current_num_threads());
+    let mut report = StatsReport::new(rayon::current_num_threads());
     for (scene_idx, path) in args.scenes.iter().enumerate() {
-        let stats = pool.install(|| session.run_scene(scene_idx, path))?;
+        let stats = session.run_scene(scene_idx, path)?;
         if args.stats == Some(StatsFormat::Table) {
             print::to_stdout(&stats.table())?;
         }
@@ -62,6 +67,7 @@ pub fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
 struct Session<'a> {
     args: &'a RunArgs,
     settings: Settings,
+    interrupts: Interrupts,
     cancellation: CancellationToken,
     sink: DiskSink,
     /// For each file which scene writes it: its place among the arguments.
@@ -124,7 +130,7 @@ impl Session<'_> {
             return self.dry_run(program, reporter);
         }
         let options = Options { settings: &self.settings, observer: reporter, cancellation: &self.cancellation };
-        interrupt::while_rendering(|| execute(program, options, &mut self.sink)).map(drop)
+        self.interrupts.while_rendering(|| execute(program, options, &mut self.sink)).map(drop)
     }
 
     /// Looks at the names and says what would be written.
@@ -171,6 +177,9 @@ impl Session<'_> {
 
     /// Warns when another scene of this call writes a file that this one writes too.
     fn warn_of_shared_files(&mut self, scene_idx: usize, program: &Valid) {
+        if self.args.scenes.len() == 1 {
+            return;
+        }
         for name in names(program) {
             let Ok(target) = self.sink.find(name) else { continue };
             let other = self.writers.insert(target, scene_idx).filter(|other| *other != scene_idx);
