@@ -61,7 +61,7 @@ pub struct WriteReport {
     pub trace_time: Duration,
     /// Time spent encoding and writing, most of it while tracing.
     pub encode_time: Duration,
-    /// Time spent making the file durable and giving it its name.
+    /// Time spent giving the file its name.
     pub save_time: Duration,
     /// Time from beginning to end.
     pub total_time: Duration,

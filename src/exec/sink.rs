@@ -73,7 +73,7 @@ pub enum Step {
     MakeFolder,
     /// Making a file.
     Create,
-    /// Making a finished file durable and giving it its name.
+    /// Giving a finished file its name.
     Save,
 }
 

@@ -11,8 +11,13 @@ const MAX_LINKS: usize = 40;
 ///
 /// Parts that do not exist stay as they are, unlike in `std::fs::canonicalize`: the file is still to be made.
 pub fn follow_links(path: &Path) -> io::Result<PathBuf> {
-    let mut real = PathBuf::new();
-    let mut ahead = std::path::absolute(path)?;
+    follow_links_below(Path::new(""), &std::path::absolute(path)?)
+}
+
+/// Does the work of [`follow_links`] for `path` in the folder `real`, whose own links are followed already.
+pub fn follow_links_below(real: &Path, path: &Path) -> io::Result<PathBuf> {
+    let mut real = real.to_owned();
+    let mut ahead = path.to_owned();
     let mut n_links = 0;
     loop {
         let mut parts = ahead.components();

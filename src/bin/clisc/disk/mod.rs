@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use clisc::exec::{ImageRequest, Refusal, Sink, SinkError, Step};
 
-use self::links::follow_links;
+use self::links::{follow_links, follow_links_below};
 use self::pending::PendingFile;
 
 /// Saves images below a folder, which is made when it is missing. An image is there as a whole or not at all.
@@ -46,7 +46,7 @@ impl DiskSink {
     pub fn find(&self, name: &str) -> Result<PathBuf, SinkError> {
         let io_error = |step| move |source| SinkError::Io { step, path: shown(&self.out_dir, name), source };
         let root = follow_links(&self.out_dir).map_err(io_error(Step::Reach))?;
-        let target = follow_links(&self.out_dir.join(name)).map_err(io_error(Step::Reach))?;
+        let target = follow_links_below(&root, Path::new(name)).map_err(io_error(Step::Reach))?;
         if !target.starts_with(&root) {
             return Err(SinkError::Refused(Refusal::LinkLeadsOut { to: target }));
         }

@@ -32,16 +32,23 @@ impl PendingFile {
         tempfile::Builder::new().prefix(".clisc-").suffix(".tmp").make_in(folder, create).map(Self::Named)
     }
 
-    /// Makes the file durable and gives it its name, in one step for whoever looks; a file of that name is replaced.
+    /// Gives the file its name, in one step for whoever looks; a file of that name is replaced.
+    ///
+    /// A file system that knows files without names takes the room for what is written to them at once, so that nothing
+    /// is left to fail. Others, those behind a network first of all, may still find that a file is too large when it is
+    /// sent to the disk: there that comes before the name. A power cut may take any image that has not reached the disk
+    /// yet; the scene can make it again.
     ///
     /// # Errors
-    /// When one of the two fails; a file of that name is then still there.
+    /// When the file cannot be kept or named; a file of that name is then still there.
     pub fn save_as(self, target: &Path) -> io::Result<()> {
-        self.file().sync_all()?;
         match self {
             #[cfg(target_os = "linux")]
             Self::Nameless(file) => linux::give_name(&file, target),
-            Self::Named(file) => file.persist(target).map(drop).map_err(|failed| failed.error),
+            Self::Named(file) => {
+                file.as_file().sync_all()?;
+                file.persist(target).map(drop).map_err(|failed| failed.error)
+            }
         }
     }
 
