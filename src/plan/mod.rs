@@ -6,6 +6,7 @@
 //!
 //! Never here: rays, pixels, threads of its own; guesses.
 
+mod apex;
 mod candidates;
 mod passes;
 mod scene;
@@ -46,7 +47,7 @@ pub fn plan<'p>(view: SceneView<'p>, settings: &Settings) -> Plan<'p> {
     Plan {
         settings: settings.clone(),
         fov_deg: view.fov_deg(),
-        tiles: Tiles::of_everything(settings.size, everything.clone()),
+        tiles: Tiles::new(&scene, view.fov_deg(), settings),
         everything,
         scene,
     }

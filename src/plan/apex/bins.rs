@@ -1,0 +1,198 @@
+//! Bins: for each cell of a grid the objects in it.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+/// A block of cells: an outline on a grid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cells {
+    /// First and last column; none when the first is behind the last.
+    pub columns: [u16; 2],
+    /// First and last row.
+    pub rows: [u16; 2],
+    /// No part of the object is nearer; not negative.
+    pub near: f32,
+}
+
+impl Cells {
+    /// No cell.
+    pub const NONE: Self = Self { columns: [1, 0], rows: [1, 0], near: 0.0 };
+
+    /// Tells whether there is no cell.
+    pub fn is_none(&self) -> bool {
+        self.columns[0] > self.columns[1]
+    }
+
+    /// Returns the block in a grid whose cells are 2ᵘ columns wide and 2ᵛ rows high.
+    pub fn coarser(self, [u, v]: [u32; 2]) -> Self {
+        let coarser = |cells: [u16; 2], shift: u32| cells.map(|cell| (u32::from(cell) >> shift) as u16);
+        match self.is_none() {
+            true => Self::NONE,
+            false => Self { columns: coarser(self.columns, u), rows: coarser(self.rows, v), near: self.near },
+        }
+    }
+}
+
+/// For each cell of a grid the indices of the objects in it, nearest first.
+#[derive(Debug, Default)]
+pub struct Bins {
+    /// Where the list of each cell starts, row by row, and where the last ends.
+    starts: Vec<u32>,
+    indices: Vec<u32>,
+}
+
+/// Objects from which on several threads are worth it.
+const PARALLEL_FROM: usize = 8192;
+
+impl Bins {
+    /// Sorts objects into the cells of a grid of `n_columns` and `n_rows`, by counting.
+    ///
+    /// `cells(i)`: those of object i. The order in a cell is by `near`, then by index, on any number of threads.
+    ///
+    /// # Panics
+    /// When the lists have 2³² indices or more together.
+    pub fn new(n_objects: usize, [n_columns, n_rows]: [u32; 2], cells: impl Fn(usize) -> Cells + Send + Sync) -> Self {
+        let (n_columns, n_rows) = (n_columns as usize, n_rows as usize);
+        let blocks = nearest_first(n_objects, cells);
+        let n_bands = if n_objects < PARALLEL_FROM { 1 } else { rayon::current_num_threads() * 2 };
+        let band_rows = n_rows.div_ceil(n_bands);
+        let band = |i: usize| Band { rows: i * band_rows..n_rows.min((i + 1) * band_rows), n_columns };
+
+        let mut starts = vec![0; n_columns * n_rows + 1];
+        let counts = starts[1..].par_chunks_mut(band_rows * n_columns);
+        counts.enumerate().for_each(|(i, counts)| band(i).count(&blocks, counts));
+        accumulate(&mut starts);
+
+        let mut indices = vec![0; starts[n_columns * n_rows] as usize];
+        let mut rest = indices.as_mut_slice();
+        let mut parts = Vec::new();
+        for band in (0..n_rows.div_ceil(band_rows)).map(band) {
+            let starts = &starts[band.rows.start * n_columns..=band.rows.end * n_columns];
+            let (part, others) = rest.split_at_mut((starts[starts.len() - 1] - starts[0]) as usize);
+            parts.push((band, starts, part));
+            rest = others;
+        }
+        parts.into_par_iter().for_each(|(band, starts, part)| band.fill(&blocks, starts, part));
+        Self { starts, indices }
+    }
+
+    /// Returns the objects in a cell, counted row by row.
+    pub fn list(&self, cell_idx: usize) -> &[u32] {
+        &self.indices[self.starts[cell_idx] as usize..self.starts[cell_idx + 1] as usize]
+    }
+
+    /// Tells whether no object is in any of these cells.
+    pub fn are_empty(&self, cells: Range<usize>) -> bool {
+        self.starts[cells.start] == self.starts[cells.end]
+    }
+}
+
+/// Returns the blocks of all objects that have one with the objects' indices, nearest first.
+fn nearest_first(n_objects: usize, cells: impl Fn(usize) -> Cells + Send + Sync) -> Vec<(Cells, u32)> {
+    // Numbers that are not negative are ordered as their bits are.
+    let key = |(cells, i): &(Cells, u32)| u64::from(cells.near.to_bits()) << 32 | u64::from(*i);
+    let block = |i: usize| Some((cells(i), i as u32)).filter(|(cells, _)| !cells.is_none());
+    if n_objects < PARALLEL_FROM {
+        let mut blocks: Vec<_> = (0..n_objects).filter_map(block).collect();
+        blocks.sort_unstable_by_key(key);
+        return blocks;
+    }
+    let mut blocks: Vec<_> = (0..n_objects).into_par_iter().filter_map(block).collect();
+    blocks.par_sort_unstable_by_key(key);
+    blocks
+}
+
+/// Turns counts behind a 0 into starts and the end of the last.
+fn accumulate(counts: &mut [u32]) {
+    let mut sum = 0u32;
+    for count in counts {
+        sum = sum.checked_add(*count).expect("fewer than 2^32 indices");
+        *count = sum;
+    }
+}
+
+/// Some rows of a grid, the work of one thread.
+struct Band {
+    rows: Range<usize>,
+    n_columns: usize,
+}
+
+impl Band {
+    /// Returns the cells of a block in each row of the band, counted from its first.
+    fn cells(&self, block: &Cells) -> impl Iterator<Item = Range<usize>> + use<> {
+        let [first, last] = block.rows.map(usize::from);
+        let [left, right] = block.columns.map(usize::from);
+        let (top, n_columns) = (self.rows.start, self.n_columns);
+        (first.max(top)..(last + 1).min(self.rows.end)).map(move |row| {
+            let start = (row - top) * n_columns;
+            start + left..start + right + 1
+        })
+    }
+
+    /// Counts the blocks in each cell.
+    fn count(&self, blocks: &[(Cells, u32)], counts: &mut [u32]) {
+        for (block, _) in blocks {
+            for cells in self.cells(block) {
+                counts[cells].iter_mut().for_each(|count| *count += 1);
+            }
+        }
+    }
+
+    /// Writes the lists of the cells, whose starts are given and the end of the last.
+    fn fill(&self, blocks: &[(Cells, u32)], starts: &[u32], indices: &mut [u32]) {
+        let mut next: Vec<u32> = starts.iter().map(|start| start - starts[0]).collect();
+        for (block, i) in blocks {
+            for cells in self.cells(block) {
+                for next in &mut next[cells] {
+                    indices[*next as usize] = *i;
+                    *next += 1;
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::Stream;
+
+    fn random_cells(stream: &mut Stream) -> Cells {
+        if stream.below(5) == 0 {
+            return Cells::NONE;
+        }
+        let mut range = |n: usize| {
+            let first = stream.below(n);
+            [first as u16, (first + stream.below(n - first)) as u16]
+        };
+        Cells { columns: range(13), rows: range(37), near: stream.below(50) as f32 }
+    }
+
+    #[test]
+    fn each_cell_lists_its_objects_nearest_first() {
+        for n_objects in [0, 1, 100, PARALLEL_FROM + 1] {
+            let mut stream = Stream::new(n_objects as u64);
+            let cells: Vec<_> = (0..n_objects).map(|_| random_cells(&mut stream)).collect();
+            let bins = Bins::new(n_objects, [13, 37], |i| cells[i]);
+            for (row, column) in (0..37).flat_map(|row| (0..13).map(move |column| (row, column))) {
+                let is_in = |i: &u32| {
+                    let Cells { columns, rows, .. } = cells[*i as usize];
+                    columns[0] <= column && column <= columns[1] && rows[0] <= row && row <= rows[1]
+                };
+                let mut expected: Vec<u32> = (0..n_objects as u32).filter(is_in).collect();
+                expected.sort_by(|a, b| cells[*a as usize].near.total_cmp(&cells[*b as usize].near));
+                assert_eq!(bins.list(usize::from(row) * 13 + usize::from(column)), expected);
+            }
+            let is_empty = cells.iter().all(Cells::is_none);
+            assert_eq!(bins.are_empty(0..13 * 37), is_empty);
+        }
+    }
+
+    #[test]
+    fn coarser_cells_hold_what_the_finer_ones_hold() {
+        let block = Cells { columns: [3, 17], rows: [8, 8], near: 1.0 };
+        assert_eq!(block.coarser([3, 2]), Cells { columns: [0, 2], rows: [2, 2], near: 1.0 });
+        assert!(Cells::NONE.coarser([3, 3]).is_none());
+    }
+}

@@ -1,0 +1,172 @@
+//! Outlines: the slopes under which an apex sees an object.
+//!
+//! # Method
+//! Place the apex at the origin and look along one axis, *ahead*. A point has two slopes, its coordinates *across* divided
+//! by its coordinate ahead. The slopes of a disc of radius r about (across, ahead) lie between those of its two tangents
+//! through the apex: with the length s of the tangents, s² = across² + ahead² − r², they have the directions
+//! (across·s ∓ ahead·r, ahead·s ± across·r). A sphere is a disc in each of two planes, an upright cylinder a disc from
+//! above and a box from aside.
+//!
+//! Why a grazing ray is not lost: s is rounded down, which turns the two tangents outward, for they meet the axis of the
+//! disc at an angle of arctan r/s. What rounding does to the direction of a tangent from there on is bounded and taken off
+//! outward, before and behind the division. Where a bound would have to be negative (the apex in the disc or near it), all
+//! slopes are possible.
+
+use crate::plan::apex::{ROUNDOFF, UNDERFLOW};
+
+/// A bound of what an apex sees of one object ahead of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Outline {
+    /// The least and the largest slope along each of the two axes across, −∞ to ∞.
+    pub slopes: [[f64; 2]; 2],
+    /// No point of the object that is ahead has a smaller coordinate ahead; not negative.
+    pub near: f64,
+}
+
+impl Outline {
+    /// Returns the outline of a sphere; `None` when no point of it is ahead.
+    ///
+    /// `center`: from the apex, the two coordinates across and the one ahead.
+    pub fn of_sphere([u, v, ahead]: [f64; 3], radius: f64) -> Option<Self> {
+        let slopes = [disc_slopes(u, ahead, radius)?, disc_slopes(v, ahead, radius)?];
+        Some(Self { slopes, near: nearest(ahead, radius) })
+    }
+
+    /// Returns the outline of a cylinder that stands upright along the second axis across; `None` when no point of it is
+    /// ahead.
+    ///
+    /// `axis`: from the apex, the first coordinate across and the one ahead. `heights`: of its two caps, from the apex.
+    pub fn of_upright_cylinder([u, ahead]: [f64; 2], radius: f64, heights: [f64; 2]) -> Option<Self> {
+        let slopes = [disc_slopes(u, ahead, radius)?, box_slopes(heights, [ahead - radius, ahead + radius])];
+        Some(Self { slopes, near: nearest(ahead, radius) })
+    }
+}
+
+/// Returns a lower bound of ahead − radius, at least 0.
+fn nearest(ahead: f64, radius: f64) -> f64 {
+    (ahead - radius).next_down().max(0.0)
+}
+
+/// Returns the slopes of a disc; `None` when no point of it is ahead.
+fn disc_slopes(across: f64, ahead: f64, radius: f64) -> Option<[f64; 2]> {
+    // A rounded sum has the sign of the sum.
+    if ahead + radius <= 0.0 {
+        return None;
+    }
+    let tangent = tangent_length(across, ahead, radius);
+    Some(match tangent {
+        None => [f64::NEG_INFINITY, f64::INFINITY],
+        Some(tangent) => [least_slope(across, ahead, radius, tangent), -least_slope(-across, ahead, radius, tangent)],
+    })
+}
+
+/// Returns a lower bound of s, the length of the tangents to a disc; `None` when the apex may lie in the disc.
+fn tangent_length(across: f64, ahead: f64, radius: f64) -> Option<f64> {
+    let (across, ahead, radius) = (across * across, ahead * ahead, radius * radius);
+    let squared = across + ahead - radius;
+    let lowered = squared - (8.0 * ROUNDOFF * (across + ahead + radius) + UNDERFLOW);
+    (lowered > 0.0).then(|| lowered.sqrt() * (1.0 - 4.0 * ROUNDOFF))
+}
+
+/// Returns a lower bound of the slopes of a disc of which some point is ahead.
+///
+/// The direction (n, d) of the tangent that bounds them from below points ahead when d > 0; when it does not, the disc
+/// reaches beside or behind the apex on that side, and nothing bounds its slopes.
+fn least_slope(across: f64, ahead: f64, radius: f64, tangent: f64) -> f64 {
+    let slack = 8.0 * ROUNDOFF * (across.abs() + ahead.abs()) * (tangent + radius) + UNDERFLOW;
+    let n = across * tangent - ahead * radius - slack;
+    let d = ahead * tangent + across * radius;
+    if d <= slack {
+        return f64::NEG_INFINITY;
+    }
+    lower(if n >= 0.0 { n / (d + slack) } else { n / (d - slack) })
+}
+
+/// Returns the slopes of the part of a box that is ahead, of which there is some.
+///
+/// `ahead`: its coordinates ahead, each off by at most one rounding.
+fn box_slopes([low, high]: [f64; 2], ahead: [f64; 2]) -> [f64; 2] {
+    let (near, far) = (ahead[0].next_down(), ahead[1].next_up());
+    let most = |across: f64| match (across > 0.0, near > 0.0) {
+        (false, _) => across / far,
+        (true, true) => across / near,
+        (true, false) => f64::INFINITY,
+    };
+    [lower(-most(-low)), -lower(-most(high))]
+}
+
+/// Returns a number below a quotient that was rounded.
+fn lower(quotient: f64) -> f64 {
+    quotient - (quotient.abs() * (4.0 * ROUNDOFF) + f64::MIN_POSITIVE)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::DoubleDouble;
+    use crate::testing::Stream;
+
+    /// Tells by double-double whether the disc is met by the ray of this slope: (across − slope·ahead)² ≤ r²·(1 + slope²).
+    fn is_met(slope: f64, across: f64, ahead: f64, radius: f64) -> bool {
+        let offset = DoubleDouble::from(across) - DoubleDouble::product(slope, ahead);
+        let reach = DoubleDouble::product(radius, radius) * (DoubleDouble::ONE + DoubleDouble::product(slope, slope));
+        (reach - offset.square()).hi() >= 0.0
+    }
+
+    /// Slopes that meet a disc ahead are within its bounds, to the last bit: bisection finds the outermost.
+    #[test]
+    fn no_slope_that_meets_a_disc_is_outside() {
+        let mut stream = Stream::new(11);
+        let mut n_bounded = 0;
+        for _ in 0..20_000 {
+            let radius = libm::exp2(stream.between(-40.0, 10.0));
+            let across = stream.between(-1.0, 1.0) * libm::exp2(stream.between(-20.0, 10.0));
+            let ahead = radius * libm::exp2(stream.between(-2.0, 40.0)) + radius * stream.unit();
+            let Some([low, high]) = disc_slopes(across, ahead, radius) else { panic!("{ahead} is ahead") };
+            if !low.is_finite() || !high.is_finite() {
+                continue;
+            }
+            n_bounded += 1;
+            for bound in [low, high] {
+                assert!(!is_met(bound, across, ahead, radius), "{across} {ahead} {radius}: {bound} is met");
+            }
+            // The bounds are no wider than rounding asks for.
+            let middle = (low + high) / 2.0;
+            let shrunk = |bound: f64| bound + (middle - bound) * 1e-2;
+            let is_wide = (high - low) > 1e-10 * (1.0 + low.abs() + high.abs());
+            let is_far = ahead > 1.001 * radius && low.abs().max(high.abs()) < 1e3;
+            if is_wide && is_far {
+                assert!(is_met(shrunk(low), across, ahead, radius), "{across} {ahead} {radius}: {low} is loose");
+                assert!(is_met(shrunk(high), across, ahead, radius), "{across} {ahead} {radius}: {high} is loose");
+            }
+        }
+        assert!(n_bounded > 10_000);
+    }
+
+    #[test]
+    fn what_is_around_or_beside_the_apex_is_unbounded_and_what_is_behind_is_not_seen() {
+        let all = [f64::NEG_INFINITY, f64::INFINITY];
+        assert_eq!(disc_slopes(0.5, 0.5, 1.0), Some(all), "around");
+        assert_eq!(disc_slopes(3.0, 4.0, 5.0), Some(all), "on the circle");
+        assert_eq!(disc_slopes(0.0, -1.0, 1.0), None, "touches the plane of the apex from behind");
+        assert_eq!(disc_slopes(7.0, -2.0, 1.0), None);
+        let [low, high] = disc_slopes(3.0, -0.5, 1.0).expect("partly ahead");
+        assert!(low > 3.0 && high == f64::INFINITY);
+        let [low, high] = disc_slopes(-3.0, 0.5, 1.0).expect("partly ahead");
+        assert!(low == f64::NEG_INFINITY && high < -1.0);
+    }
+
+    #[test]
+    fn boxes_are_bounded_by_their_corners() {
+        let within = |[low, high]: [f64; 2], exact: [f64; 2]| {
+            low < exact[0] && low > exact[0] - 1e-12 && high > exact[1] && high < exact[1] + 1e-12
+        };
+        assert!(within(box_slopes([-1.0, 3.0], [2.0, 4.0]), [-0.5, 1.5]));
+        assert!(within(box_slopes([1.0, 3.0], [2.0, 4.0]), [0.25, 1.5]));
+        assert!(within(box_slopes([-3.0, -1.0], [2.0, 4.0]), [-1.5, -0.25]));
+        let [low, high] = box_slopes([-3.0, -1.0], [-2.0, 4.0]);
+        assert!(low == f64::NEG_INFINITY && (-0.25..-0.24).contains(&high));
+        let [low, high] = box_slopes([0.0, 1.0], [0.0, 4.0]);
+        assert!(low < 0.0 && low > -1e-300 && high == f64::INFINITY);
+    }
+}
