@@ -121,6 +121,7 @@ fn each_foreign_tool_has_one_room() {
         ("logos::", "src/syntax"),
         ("chumsky::", "src/syntax/parser"),
         ("png::", "src/image"),
+        ("crc32fast::", "src/image"),
         ("image::Image", "src/image"),
         ("unsafe {", "src/trace/kernels"),
         ("unsafe fn", "src/trace/kernels"),
