@@ -10,6 +10,7 @@ mod ball106;
 mod ball64;
 mod double_double;
 mod elementary;
+mod expansion;
 mod real;
 mod vector;
 
@@ -17,6 +18,7 @@ pub use ball64::Ball64;
 pub use ball106::Ball106;
 pub use double_double::DoubleDouble;
 pub use elementary::tan_half_degrees;
+pub use expansion::{Expansion, compare_sum_zero};
 pub use real::{Real, Sign};
 pub use vector::Vector;
 
