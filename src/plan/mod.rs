@@ -6,20 +6,37 @@
 //!
 //! Never here: rays, pixels, threads of its own; guesses.
 
+mod analysis;
 mod apex;
+mod bodies;
+mod bounces;
 mod candidates;
+mod frustum;
+mod objects;
 mod passes;
+mod report;
 mod scene;
 mod settings;
+mod shadows;
+mod solid;
+mod terms;
 mod tiles;
 
+pub use bodies::Region;
 pub use candidates::{Candidates, Object, ObjectLists};
 pub use passes::{Pass, Passes};
+pub use report::{Kept, LeftOut, Reason, Report};
 pub use scene::{CylinderLanes, Light, Primitive, Scene, SphereLanes};
 pub use settings::{Part, SampleAt, Settings, Size};
+pub use solid::Faces;
+pub use terms::{Exponent, Terms};
 pub use tiles::Tiles;
 
-use crate::ir::SceneView;
+use crate::ir::{Handle, SceneView, Surface};
+use crate::plan::analysis::{Analysis, analyse};
+
+/// Programs with more surfaces have the needs of each found out when it is asked for.
+const MAX_STORED_TERMS: usize = 4096;
 
 /// What one image needs.
 #[derive(Debug)]
@@ -32,40 +49,128 @@ pub struct Plan<'p> {
     pub scene: Scene<'p>,
     /// For each tile of the image what its eye rays can meet.
     pub tiles: Tiles,
+    /// What the passes have found.
+    pub report: Report,
+    /// For each surface of the program what it needs; empty when they are too many to be kept.
+    terms: Vec<Terms>,
+    /// What is known of the objects, unless they are too many.
+    known: Option<Analysis>,
     /// Everything in the scene.
     everything: ObjectLists,
+    /// What reflected rays can meet.
+    mirrored: ObjectLists,
+    /// The indices of all lights.
+    all_lights: Vec<u32>,
 }
 
 /// Finds out what the image of a scene needs.
 #[must_use]
 pub fn plan<'p>(view: SceneView<'p>, settings: &Settings) -> Plan<'p> {
-    let scene = Scene::new(view, settings.part);
-    let everything = ObjectLists {
-        spheres: (0..scene.sphere_primitives.len() as u32).collect(),
-        cylinders: (0..scene.cylinder_primitives.len() as u32).collect(),
+    let mut scene = Scene::new(view, settings.part);
+    let mut report = Report::new(&view, &scene);
+    let known = analyse(&mut scene, view.fov_deg(), settings, &mut report);
+    let n_stored = if scene.surfaces.len() <= MAX_STORED_TERMS { scene.surfaces.len() } else { 0 };
+    let terms: Vec<_> =
+        scene.surfaces[..n_stored].iter().map(|surface| Terms::new(surface, &scene.lights, settings)).collect();
+    report.add(&scene, known.as_ref(), &terms);
+
+    let everything = ObjectLists::of_all(&scene, |_| true);
+    let mirrored = match &known {
+        Some(known) => ObjectLists::of_all(&scene, |i| known.roles.mirrored[i]),
+        None => everything.clone(),
     };
     Plan {
         settings: settings.clone(),
         fov_deg: view.fov_deg(),
         tiles: Tiles::new(&scene, view.fov_deg(), settings),
+        report,
+        terms,
+        known,
+        mirrored,
+        all_lights: (0..scene.lights.len() as u32).collect(),
         everything,
         scene,
     }
 }
 
 impl Plan<'_> {
-    /// Returns what can lie between a surface of `receiver` and a light.
+    /// Returns what a surface needs to be shaded.
+    #[must_use]
+    pub fn terms(&self, surface: Handle<Surface>) -> Terms {
+        let i = surface.index();
+        let find = || Terms::new(&self.scene.surfaces[i], &self.scene.lights, &self.settings);
+        self.terms.get(i).copied().unwrap_or_else(find)
+    }
+
+    /// Returns the lights that may add to a hit on an object, by their indices in [`Scene::lights`], in order.
+    #[must_use]
+    pub fn lights(&self, object: Object) -> &[u32] {
+        let lights = self.known.as_ref().and_then(|known| known.lights.as_ref());
+        lights.map_or(&self.all_lights, |lights| &lights[self.place(object)])
+    }
+
+    /// Returns what can lie between a surface of `receiver` and a light; what is likely to lie there comes first.
     ///
-    /// `light_idx`: in [`Scene::lights`].
+    /// `light_idx`: in [`Scene::lights`]. The receiver itself is among them only if it may lie on its own way.
     #[must_use]
     pub fn occluders(&self, receiver: Object, light_idx: usize) -> Candidates<'_> {
-        let _ = (receiver, light_idx);
-        self.everything.as_candidates()
+        match self.known.as_ref().and_then(|known| known.occluders.as_ref()) {
+            Some(table) => table.get(self.place(receiver) * self.scene.lights.len() + light_idx),
+            None => self.everything.as_candidates(),
+        }
+    }
+
+    /// Tells whether an object may lie between a point of `region`, off the object, and a light: `false` is proved.
+    ///
+    /// `light_idx`: in [`Scene::lights`]. It takes about as long as some ten tests of a ray.
+    #[must_use]
+    pub fn may_lie_between(&self, region: &Region, light_idx: usize, object: Object) -> bool {
+        let solid = match &self.known {
+            Some(known) => known.solids[self.place(object)],
+            None => self.scene.solid(object),
+        };
+        shadows::may_lie_between(region, self.scene.lights[light_idx].position, &solid)
     }
 
     /// Returns what a reflected ray can meet.
     #[must_use]
     pub fn mirrored(&self) -> Candidates<'_> {
-        self.everything.as_candidates()
+        self.mirrored.as_candidates()
+    }
+
+    /// Returns what a ray that is reflected by `mirror` can meet.
+    #[must_use]
+    pub fn mirrored_by(&self, mirror: Object) -> Candidates<'_> {
+        match self.known.as_ref().and_then(|known| known.reflected.as_ref()) {
+            Some(table) => table.get(self.place(mirror)),
+            None => self.mirrored(),
+        }
+    }
+
+    /// Tells whether eye rays and reflected rays are proved to come to an object from outside alone.
+    #[must_use]
+    pub fn is_met_from_outside_alone(&self, object: Object) -> bool {
+        self.known.as_ref().is_some_and(|known| known.roles.sealed[self.place(object)])
+    }
+
+    /// Returns the faces of an object that eye rays and reflected rays can meet.
+    #[must_use]
+    pub fn faces(&self, object: Object) -> Faces {
+        self.known.as_ref().map_or(Faces::ALL, |known| known.roles.faces[self.place(object)])
+    }
+
+    /// Returns the last level that rays can have: that of the settings or less, when mirrors do not send rays on and on.
+    #[must_use]
+    pub fn last_level(&self) -> u32 {
+        let beyond = self.settings.max_level + 1;
+        self.report.max_bounces.map_or(beyond, |bounces| bounces.min(beyond))
+    }
+
+    /// Returns the place of an object among all, spheres first.
+    fn place(&self, object: Object) -> usize {
+        match object {
+            Object::Sphere(i) => i as usize,
+            Object::Cylinder(i) => self.scene.sphere_primitives.len() + i as usize,
+        }
     }
 }

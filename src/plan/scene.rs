@@ -1,9 +1,12 @@
 //! The scene of one image, laid out in lanes and scaled so that no square overflows.
 
+use std::borrow::Cow;
+
 use glam::DVec3;
 
 use crate::ir::{self, EquationId, SceneView};
-use crate::plan::Part;
+use crate::plan::bodies::Solid;
+use crate::plan::{Object, Part};
 
 /// Spheres, coordinate by coordinate.
 #[derive(Clone, Debug, Default)]
@@ -70,15 +73,15 @@ pub struct Scene<'p> {
     /// What else is known of each sphere.
     pub sphere_primitives: Vec<Primitive>,
     /// The identity of each sphere.
-    pub sphere_equations: &'p [EquationId],
+    pub sphere_equations: Cow<'p, [EquationId]>,
     /// The cylinders.
     pub cylinders: CylinderLanes,
     /// What else is known of each cylinder.
     pub cylinder_primitives: Vec<Primitive>,
     /// The identity of each wall.
-    pub wall_equations: &'p [EquationId],
+    pub wall_equations: Cow<'p, [EquationId]>,
     /// The identities of each lower and upper cap.
-    pub cap_equations: &'p [[EquationId; 2]],
+    pub cap_equations: Cow<'p, [[EquationId; 2]]>,
 }
 
 impl<'p> Scene<'p> {
@@ -100,12 +103,63 @@ impl<'p> Scene<'p> {
             sphere_primitives: (view.spheres().iter())
                 .map(|s| Primitive { surface: s.surface, order: s.order })
                 .collect(),
-            sphere_equations: &equations.spheres,
+            sphere_equations: equations.spheres[..view.spheres().len()].into(),
             cylinders: lay_out_cylinders(cylinders, scale),
             cylinder_primitives: cylinders.iter().map(|c| Primitive { surface: c.surface, order: c.order }).collect(),
-            wall_equations: &equations.walls,
-            cap_equations: &equations.caps,
+            wall_equations: equations.walls[..cylinders.len()].into(),
+            cap_equations: equations.caps[..cylinders.len()].into(),
         }
+    }
+
+    /// Leaves out the objects, counted spheres first, that are not to be kept. What is left keeps its order.
+    pub(super) fn retain(&mut self, keep: impl Fn(usize) -> bool) {
+        let n_spheres = self.sphere_primitives.len();
+        let n_cylinders = self.cylinder_primitives.len();
+        if (0..n_spheres + n_cylinders).all(&keep) {
+            return;
+        }
+        let SphereLanes { x, y, z, radius } = &mut self.spheres;
+        [x, y, z, radius].into_iter().for_each(|lane| retain_at(lane, &keep));
+        retain_at(&mut self.sphere_primitives, &keep);
+        retain_at(self.sphere_equations.to_mut(), &keep);
+
+        let keep = |cylinder: usize| keep(n_spheres + cylinder);
+        let CylinderLanes { x, z, radius, y_min, y_max } = &mut self.cylinders;
+        [x, z, radius, y_min, y_max].into_iter().for_each(|lane| retain_at(lane, keep));
+        retain_at(&mut self.cylinder_primitives, keep);
+        retain_at(self.wall_equations.to_mut(), keep);
+        retain_at(self.cap_equations.to_mut(), keep);
+    }
+
+    /// Returns the number of spheres and cylinders.
+    #[must_use]
+    pub fn n_objects(&self) -> usize {
+        self.sphere_primitives.len() + self.cylinder_primitives.len()
+    }
+
+    /// Returns an object as a solid.
+    pub(super) fn solid(&self, object: Object) -> Solid {
+        match object {
+            Object::Sphere(i) => {
+                let (i, SphereLanes { x, y, z, radius }) = (i as usize, &self.spheres);
+                Solid::Sphere { center: DVec3::new(x[i], y[i], z[i]), radius: radius[i] }
+            }
+            Object::Cylinder(i) => {
+                let (i, CylinderLanes { x, z, radius, y_min, y_max }) = (i as usize, &self.cylinders);
+                Solid::Cylinder { x: x[i], z: z[i], radius: radius[i], y_min: y_min[i], y_max: y_max[i] }
+            }
+        }
+    }
+
+    /// Returns every object, spheres first.
+    pub(super) fn objects(&self) -> impl Iterator<Item = Object> + use<> {
+        let spheres = (0..self.sphere_primitives.len() as u32).map(Object::Sphere);
+        spheres.chain((0..self.cylinder_primitives.len() as u32).map(Object::Cylinder))
+    }
+
+    /// Returns every primitive, spheres first.
+    pub(super) fn primitives(&self) -> impl Iterator<Item = &Primitive> {
+        self.sphere_primitives.iter().chain(&self.cylinder_primitives)
     }
 
     /// Returns the surface of a primitive.
@@ -114,9 +168,23 @@ impl<'p> Scene<'p> {
     }
 }
 
+/// Keeps the elements at the places that `keep` names.
+pub(super) fn retain_at<T>(items: &mut Vec<T>, keep: impl Fn(usize) -> bool) {
+    let mut place = 0;
+    items.retain(|_| {
+        place += 1;
+        keep(place - 1)
+    });
+}
+
 /// Returns the lights that are not black.
 fn shining<'p>(view: &SceneView<'p>) -> impl Iterator<Item = &'p ir::Light> + use<'p> {
-    view.lights().iter().filter(|light| light.color != DVec3::ZERO)
+    view.lights().iter().filter(|light| shines(light))
+}
+
+/// Tells whether a light is not black.
+pub(super) fn shines(light: &ir::Light) -> bool {
+    light.color != DVec3::ZERO
 }
 
 fn lay_out_spheres(spheres: &[ir::Sphere], scale: f64) -> SphereLanes {

@@ -251,6 +251,8 @@ fn rounded_down(number: f64) -> f32 {
 
 #[cfg(test)]
 mod tests {
+    use std::borrow::Cow;
+
     use glam::DVec3;
 
     use super::*;
@@ -265,11 +267,11 @@ mod tests {
             surfaces: &[],
             spheres: SphereLanes::default(),
             sphere_primitives: Vec::new(),
-            sphere_equations: &[],
+            sphere_equations: Cow::Borrowed(&[]),
             cylinders: CylinderLanes::default(),
             cylinder_primitives: Vec::new(),
-            wall_equations: &[],
-            cap_equations: &[],
+            wall_equations: Cow::Borrowed(&[]),
+            cap_equations: Cow::Borrowed(&[]),
         }
     }
 

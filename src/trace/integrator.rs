@@ -1,7 +1,7 @@
 //! The colour of an eye ray: from hit to hit along the mirror directions, and back.
 
 use crate::math::{Real, Vector};
-use crate::plan::{Candidates, Part, Plan};
+use crate::plan::{Candidates, Object, Part, Plan};
 use crate::trace::judge::{Doubt, Judge};
 use crate::trace::ray::{Leaving, Ray};
 use crate::trace::shade::HitPoint;
@@ -29,8 +29,8 @@ struct Bounce<R> {
 enum End<R> {
     /// A colour, and nothing more to follow.
     Color(Vector<R>),
-    /// A mirror: its bounce and the reflected ray.
-    Mirror(Bounce<R>, Ray<R>),
+    /// A mirror: its bounce, the reflected ray and what reflects it.
+    Mirror(Bounce<R>, Ray<R>, Object),
 }
 
 impl<'a, 'p, R: Real> Integrator<'a, 'p, R> {
@@ -50,15 +50,16 @@ impl<'a, 'p, R: Real> Integrator<'a, 'p, R> {
         self.judge.counts.eye_rays += 1;
         self.bounces.clear();
         let mut ray = eye_ray;
+        let mut among = among;
         let last = loop {
             let level = self.bounces.len();
-            let among = if level == 0 { among } else { self.plan.mirrored() };
             match self.follow(&ray, level as u32, among) {
                 Ok(End::Color(color)) => break color,
-                Ok(End::Mirror(bounce, reflected)) => {
+                Ok(End::Mirror(bounce, reflected, mirror)) => {
                     self.bounces.push(bounce);
                     self.judge.counts.reflected_rays += 1;
                     ray = reflected;
+                    among = self.plan.mirrored_by(mirror);
                 }
                 Err(doubt) if level == 0 => return Err(doubt),
                 Err(Doubt) => break Vector::exact(glam::DVec3::ZERO).map(|_: R| R::unit_interval()),
@@ -86,7 +87,7 @@ impl<'a, 'p, R: Real> Integrator<'a, 'p, R> {
         if self.plan.settings.part == Part::A || reflectance <= 0.0 {
             return Ok(End::Color(local));
         }
-        Ok(End::Mirror(Bounce { local, reflectance }, reflect(ray, &at)))
+        Ok(End::Mirror(Bounce { local, reflectance }, reflect(ray, &at), at.object))
     }
 }
 

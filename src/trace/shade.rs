@@ -87,10 +87,12 @@ impl<R: Real> Integrator<'_, '_, R> {
         if !answers_light(at.surface, self.plan.settings.part) {
             return Ok(color);
         }
-        for (light_idx, light) in self.plan.scene.lights.iter().enumerate() {
+        let plan = self.plan;
+        for light_idx in plan.lights(at.object).iter().map(|&light| light as usize) {
+            let light = &plan.scene.lights[light_idx];
             let to_light = Vector::exact(light.position) - at.point;
             if self.judge.is_positive(at.normal.dot(to_light))? && !self.is_shadowed(at, light_idx, to_light)? {
-                color = color + lit_by(at, light, to_light, self.plan.settings.part);
+                color = color + lit_by(at, light, to_light, plan.settings.part);
             }
         }
         Ok(color)
