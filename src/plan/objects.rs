@@ -8,10 +8,11 @@
 //! - **Sealed.** An object O is sealed when rays from the eye and from mirrors come to it from outside alone. Rays do not
 //!   pass surfaces: a reflected ray stays on the side from which its surface was met. So with the eye outside of O, off its
 //!   surface, a ray could only start inside, or on O to the inside, where a mirror A cuts the surface of O and A counts for
-//!   the hit. At equal t the first declared counts: if A is declared after O, that is O, and convex O is left for good. So O
-//!   is sealed if every mirror that is declared before O does not cut it. Spheres that touch from outside do not: the ray
-//!   that meets A where they touch comes from beyond their common tangent plane, or within that plane, and is sent back
-//!   there.
+//!   the hit. At equal t the first declared counts: if A is declared after O, that is O, and convex O is left for good. The
+//!   far rim of a cylinder is the exception: what only touches it in passing does not meet it (see `reaches` in
+//!   `src/trace/intersect.rs`), so there A may count. So O is sealed if every mirror that is declared before O does not cut
+//!   it, and every later one keeps away from its rims. Spheres that touch from outside do not cut: the ray that meets A
+//!   where they touch comes from beyond their common tangent plane, or within that plane, and is sent back there.
 //! - **Hidden.** A ray that meets what lies strictly inside a sealed O meets O before. On the way to a light, with all
 //!   lights outside O, off its surface: a segment from outside or from O's surface through the inside leaves O, with t
 //!   above 0 and before the light, so O blocks it too. The same holds for a chain of objects each inside the next.
@@ -108,8 +109,11 @@ fn live_mirrors(is_mirror: Vec<bool>, seen: &[bool]) -> Vec<bool> {
 fn find_sealed(scene: &Scene<'_>, solids: &[Solid], is_mirror: &[bool]) -> Vec<bool> {
     let orders: Vec<_> = scene.primitives().map(|primitive| primitive.order).collect();
     let n = solids.len();
-    let cuts = |m: usize, i: usize| is_mirror[m] && orders[m] < orders[i] && !solids[i].does_not_cut(&solids[m]);
-    (0..n).map(|i| solids[i].excludes(DVec3::ZERO) && !(0..n).any(|m| cuts(m, i))).collect()
+    let may_open = |m: usize, i: usize| {
+        let counts_first = orders[m] < orders[i] || !solids[i].keeps_rims_from(&solids[m]);
+        m != i && is_mirror[m] && counts_first && !solids[i].does_not_cut(&solids[m])
+    };
+    (0..n).map(|i| solids[i].excludes(DVec3::ZERO) && !(0..n).any(|m| may_open(m, i))).collect()
 }
 
 /// Returns for each object a sealed one without lights in which it lies.

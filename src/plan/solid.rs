@@ -108,6 +108,11 @@ impl Solid {
         (Ball64::exact(radius) - reach).sign() == Sign::Positive
     }
 
+    /// Proves, if it can, that this has no rim, or that `other` does not come to it.
+    pub fn keeps_rims_from(&self, other: &Self) -> bool {
+        matches!(self, Self::Sphere { .. }) || self.contains_within_wall(other)
+    }
+
     /// Proves, if it can, that the surfaces have no point in common, or are spheres that touch from outside.
     pub fn does_not_cut(&self, other: &Self) -> bool {
         are_apart(self, other) || self.contains(other) || other.contains(self) || touch_from_outside(self, other)
