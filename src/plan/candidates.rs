@@ -3,7 +3,7 @@
 use crate::plan::Scene;
 use crate::plan::scene::retain_at;
 
-/// An object by its index in [`Scene`](crate::plan::Scene).
+/// An object by its index in [`Scene`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Object {
     /// A sphere.
@@ -12,7 +12,7 @@ pub enum Object {
     Cylinder(u32),
 }
 
-/// The objects that the rays of a bundle can meet, by their indices in [`Scene`](crate::plan::Scene); what is not listed is
+/// The objects that the rays of a bundle can meet, by their indices in [`Scene`]; what is not listed is
 /// proved not to be met.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Candidates<'a> {
