@@ -10,7 +10,7 @@ use clisc::exec::{
     CancellationToken, Event, ExecError, ImageRequest, MemorySink, Observer, Options, Refusal, Sink, SinkError, Step,
     WriteReport, execute,
 };
-use clisc::image::decode_png;
+use clisc::image::{RgbImage, decode_png, encode_png};
 use clisc::ir::{self, Command, Program, Registers, SceneView, Valid};
 use clisc::plan::{Settings, Size, plan};
 use clisc::source::Span;
@@ -40,6 +40,10 @@ fn run<S: Sink>(program: &Valid, settings: &Settings, sink: &mut S) -> Result<Ve
     execute(program, Options { settings, observer: &(), cancellation }, sink)
 }
 
+fn in_pool<T: Send>(n_threads: usize, work: impl FnOnce() -> T + Send) -> T {
+    rayon::ThreadPoolBuilder::new().num_threads(n_threads).build().unwrap().install(work)
+}
+
 #[test]
 fn each_write_sees_what_stands_before_it() {
     let program = program(vec![write("black.png"), RED, write("red.png"), BLUE, write("sub/blue.png"), RED]);
@@ -56,7 +60,7 @@ fn each_write_sees_what_stands_before_it() {
     );
     for report in &reports {
         assert_eq!(report.n_bytes, sink.files[&report.name].len() as u64);
-        assert_eq!(report.counts.eye_rays, 12);
+        assert_eq!(report.counts.eye_rays, 0, "rows of background are not traced");
     }
 }
 
@@ -87,14 +91,40 @@ fn bands_and_threads_leave_no_trace_in_the_image() {
     let mut whole = vec![0; 1500 * 1001 * 3];
     Tracer::new(plan(SceneView::new(&program, registers), &settings)).render_rows(0..1001, &mut whole);
     let mut files = Vec::new();
-    for n_threads in [1, 2, 5] {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(n_threads).build().unwrap();
+    // With many threads they share rows, with few each has bands of its own.
+    for n_threads in [1, 2, 5, 20] {
         let mut sink = MemorySink::default();
-        pool.install(|| run(&program, &settings, &mut sink)).unwrap();
+        let reports = in_pool(n_threads, || run(&program, &settings, &mut sink)).unwrap();
         files.push(sink.files.remove("a.png").unwrap());
+        assert_eq!(reports[0].n_bytes, files[0].len() as u64);
     }
     assert!(decode_png(&files[0]).unwrap().rgb() == whole);
-    assert!(files[0] == files[1] && files[1] == files[2]);
+    assert!(files.iter().all(|file| *file == files[0]));
+    let whole = RgbImage::from_rgb(1500, 1001, whole).unwrap();
+    assert!(files[0] == encode_png(&whole).unwrap(), "equal pixels give equal bytes");
+}
+
+#[test]
+fn an_image_of_background_alone_is_not_traced() {
+    let reports = run(&program(vec![RED, write("a.png")]), &settings(65535, 65535), &mut Forgetful).unwrap();
+    assert_eq!(reports[0].counts.eye_rays, 0);
+    // 13 GB of pixels.
+    assert!((10_000_000..30_000_000).contains(&reports[0].n_bytes), "{} bytes", reports[0].n_bytes);
+}
+
+/// Forgets what it is given.
+struct Forgetful;
+
+impl Sink for Forgetful {
+    type File = io::Sink;
+
+    fn create(&mut self, _: &ImageRequest<'_>) -> Result<io::Sink, SinkError> {
+        Ok(io::sink())
+    }
+
+    fn commit(&mut self, _: io::Sink) -> Result<(), SinkError> {
+        Ok(())
+    }
 }
 
 #[test]
@@ -126,20 +156,24 @@ impl Observer for Log {
 
 #[test]
 fn the_observer_is_told_in_order() {
-    let log = Log::default();
     let program = program(vec![write("a.png"), write("b.png")]);
     let settings = &settings(1024, 1500);
     let cancellation = &CancellationToken::new();
-    execute(&program, Options { settings, observer: &log, cancellation }, &mut MemorySink::default()).unwrap();
-    // Without a clock a band has twice the rows of the one before.
-    let rows = [64, 192, 448, 960, 1500];
-    let mut expected = Vec::new();
-    for (idx, name) in [(0, "a.png"), (1, "b.png")] {
-        expected.push(format!("{idx} started {name} 1024x1500"));
-        expected.extend(rows.map(|n_rows| format!("{idx} rows {n_rows}")));
-        expected.push(format!("{idx} finished {name}"));
+    let bands = (1..=94).map(|n| 1500.min(16 * n)).collect::<Vec<_>>();
+    // Shared rows: without a clock each piece is twice as high as the one before.
+    let pieces = vec![64, 128, 256, 512, 1024, 1500];
+    for (n_threads, rows) in [(1, &bands), (3, &bands), (40, &pieces)] {
+        let log = Log::default();
+        let options = Options { settings, observer: &log, cancellation };
+        in_pool(n_threads, || execute(&program, options, &mut MemorySink::default())).unwrap();
+        let mut expected = Vec::new();
+        for (idx, name) in [(0, "a.png"), (1, "b.png")] {
+            expected.push(format!("{idx} started {name} 1024x1500"));
+            expected.extend(rows.iter().map(|n_rows| format!("{idx} rows {n_rows}")));
+            expected.push(format!("{idx} finished {name}"));
+        }
+        assert_eq!(log.0.into_inner().unwrap(), expected, "{n_threads} threads");
     }
-    assert_eq!(log.0.into_inner().unwrap(), expected);
 }
 
 /// Its clock ticks once a look.
@@ -179,15 +213,21 @@ impl Observer for Saboteur<'_> {
     }
 }
 
+/// So many that each thread has bands of its own, and that all share rows.
+const THREADS: [usize; 3] = [1, 3, 40];
+
 #[test]
 fn a_cancelled_image_is_not_committed() {
-    let token = CancellationToken::new();
-    let options = Options { settings: &settings(1024, 3000), observer: &Saboteur(Some(&token)), cancellation: &token };
-    let mut sink = MemorySink::default();
-    let ended = execute(&program(vec![write("a.png")]), options, &mut sink);
-    assert!(matches!(ended, Err(ExecError::Cancelled)));
-    assert!(sink.files.is_empty());
-    assert!(token.cancel(), "it stays set");
+    for n_threads in THREADS {
+        let token = CancellationToken::new();
+        let settings = &settings(1024, 3000);
+        let options = Options { settings, observer: &Saboteur(Some(&token)), cancellation: &token };
+        let mut sink = MemorySink::default();
+        let ended = in_pool(n_threads, || execute(&program(vec![write("a.png")]), options, &mut sink));
+        assert!(matches!(ended, Err(ExecError::Cancelled)));
+        assert!(sink.files.is_empty());
+        assert!(token.cancel(), "it stays set");
+    }
 }
 
 #[test]
@@ -201,13 +241,15 @@ fn a_cancelled_token_lets_nothing_begin() {
 
 #[test]
 fn a_panic_commits_nothing() {
-    let cancellation = &CancellationToken::new();
-    let options = Options { settings: &settings(1, 1), observer: &Saboteur(None), cancellation };
-    let mut sink = MemorySink::default();
-    let program = program(vec![write("a.png")]);
-    let panicked = std::panic::catch_unwind(AssertUnwindSafe(|| execute(&program, options, &mut sink)));
-    assert!(panicked.is_err());
-    assert!(sink.files.is_empty());
+    for n_threads in THREADS {
+        let cancellation = &CancellationToken::new();
+        let options = Options { settings: &settings(1024, 3000), observer: &Saboteur(None), cancellation };
+        let mut sink = MemorySink::default();
+        let program = program(vec![write("a.png")]);
+        let work = || in_pool(n_threads, || execute(&program, options, &mut sink));
+        assert!(std::panic::catch_unwind(AssertUnwindSafe(work)).is_err());
+        assert!(sink.files.is_empty());
+    }
 }
 
 /// A sink that breaks at one step; at `Reach` the file cannot be written.
@@ -258,7 +300,7 @@ fn a_broken_sink_ends_the_execution_with_its_cause() {
         (Step::Save, "cannot save `out/a.png`"),
     ] {
         let mut sink = Breaking { at, n_created: 0 };
-        let error = run(&program, &settings(2, 2), &mut sink).unwrap_err();
+        let error = run(&program, &settings(2, 700), &mut sink).unwrap_err();
         assert_eq!(error.to_string(), message);
         let cause = std::error::Error::source(&error).expect("a cause");
         assert_eq!(cause.downcast_ref::<io::Error>().unwrap().kind(), io::ErrorKind::StorageFull);

@@ -1,16 +1,19 @@
 //! The executor: a valid program in, images in a sink out.
 //!
-//! [`execute`] walks the command list; each `write` is traced a band of rows at a time, and a band is encoded while the
-//! next is traced, so that memory does not grow with the image. Where images go ([`Sink`]), who watches
+//! [`execute`] walks the command list; each `write` is traced and encoded in bands of rows by all threads, and the bands
+//! are written in order, so that memory does not grow with the image. Where images go ([`Sink`]), who watches
 //! ([`Observer`]) and what ends it early ([`CancellationToken`]) are parameters: a command line, a test and a web page
 //! drive the same code. Every name is looked at before anything is rendered.
 //!
 //! Never here: files, the clock, threads of its own (it works in the current rayon pool).
 
 mod cancel;
+mod in_order;
 mod name;
 mod observe;
+mod pieces;
 mod sink;
+mod stream;
 mod write;
 
 pub use cancel::CancellationToken;

@@ -5,7 +5,8 @@ use std::time::Duration;
 use crate::plan::Size;
 use crate::trace::Counts;
 
-/// Watches an execution. Called from the thread that executes, except for the clock; `()` watches nothing.
+/// Watches an execution. Any thread of the pool may call it, but events come one at a time and in order; `()` watches
+/// nothing.
 pub trait Observer: Sync {
     /// Is told what happened.
     fn event(&self, event: &Event<'_>) {
@@ -33,11 +34,11 @@ pub enum Event<'a> {
         /// Pixels of the image.
         size: Size,
     },
-    /// A band has been traced.
+    /// Some more rows have been traced.
     RowsDone {
         /// Which `write` of the program it is, from 0.
         write_idx: usize,
-        /// The rows traced so far.
+        /// The rows traced so far, from the top.
         n_rows: u32,
     },
     /// The image is saved.
@@ -57,9 +58,9 @@ pub struct WriteReport {
     pub n_bytes: u64,
     /// Rays and tests.
     pub counts: Counts,
-    /// Time spent tracing.
+    /// Time that threads spent tracing, added up. While they share rows each is counted from the beginning to the end.
     pub trace_time: Duration,
-    /// Time spent encoding and writing, most of it while tracing.
+    /// Time that threads spent encoding and writing, added up.
     pub encode_time: Duration,
     /// Time spent giving the file its name.
     pub save_time: Duration,

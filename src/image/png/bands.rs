@@ -106,11 +106,13 @@ impl PngBands {
     /// When there is no such band or `rgb` does not hold its pixels.
     pub fn encode(&self, band_idx: u32, rgb: &[u8], encoded: &mut EncodedBand) {
         assert_eq!(rgb.len(), self.rgb_bytes(&self.rows(band_idx)), "the pixels of the band");
+        if let Some(color) = uniform_color(rgb) {
+            return self.encode_uniform(band_idx, color, encoded);
+        }
         encoded.fill(band_idx, |out| deflate_rows(self.width as usize, rgb, out));
     }
 
-    /// Encodes a band of one colour without its pixels; the image is what [`PngBands::encode`] would give, the bytes are
-    /// fewer.
+    /// Encodes a band of one colour without its pixels, to the bytes that [`PngBands::encode`] makes of them.
     ///
     /// # Panics
     /// When there is no such band.
@@ -118,6 +120,12 @@ impl PngBands {
         let n_rows = self.rows(band_idx).len();
         encoded.fill(band_idx, |out| deflate_uniform_rows(self.width as usize, n_rows, color, out));
     }
+}
+
+/// Returns the colour of pixels that all have the same.
+fn uniform_color(rgb: &[u8]) -> Option<[u8; 3]> {
+    let color = *rgb.first_chunk()?;
+    (rgb[3..] == rgb[..rgb.len() - 3]).then_some(color)
 }
 
 impl EncodedBand {

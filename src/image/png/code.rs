@@ -64,6 +64,8 @@ pub(super) struct Code {
     pub header: Header,
     /// Each byte as a literal.
     pub literals: [Bits; 256],
+    /// Four bytes within −2…1 as literals; the index has two bits of each, the first in the lowest place.
+    pub quads: Option<&'static [Bits; 256]>,
     /// Each short run of zeros behind another byte.
     pub runs: [Bits; MAX_MATCH + 1],
     /// [`MAX_MATCH`] more zeros.
@@ -89,13 +91,12 @@ pub(super) struct Matches {
 /// # Source
 /// Fitted to 14 renders, each counted alike: each is 1 to 12 % longer than with a code of its own, 5 % in the median.
 /// A residual and its negative have one length, which makes the header short.
-pub(super) static PIXELS: Code = Code::new(&pixel_lengths());
+pub(super) static PIXELS: Code = Code { quads: Some(&PIXEL_QUADS), ..Code::new(&pixel_lengths()) };
 
 /// The code of rows of one colour: nearly all is the longest match.
 pub(super) static UNIFORM: Code = Code::new(&uniform_lengths());
 
-/// Four residuals within −2…1 in the code [`PIXELS`]; the index has two bits of each, the first in the lowest place.
-pub(super) static PIXEL_QUADS: [Bits; 256] = quads(&PIXELS.literals);
+static PIXEL_QUADS: [Bits; 256] = quads(&Code::new(&pixel_lengths()).literals);
 
 const fn pixel_lengths() -> [u8; N_SYMBOLS] {
     let mut lengths = [0; N_SYMBOLS];
@@ -159,7 +160,7 @@ impl Code {
         }
         let longest = match_of(&symbols, MAX_MATCH);
         let header = Header::new(lengths);
-        Self { header, literals, runs, longest, longest_at_once: Matches::new(longest), end: symbols[END] }
+        Self { header, literals, quads: None, runs, longest, longest_at_once: Matches::new(longest), end: symbols[END] }
     }
 }
 

@@ -80,17 +80,16 @@ proptest! {
     fn bands_of_every_height_give_the_same_pixels(image in any_image(), rows_per_band in 1..=100u32) {
         let (width, height) = (image.width(), image.height());
         let bands = PngBands { width, height, rows_per_band: rows_per_band.min(height) };
-        for knows_uniform in [false, true] {
-            let file = encoded(&image, &bands, knows_uniform);
-            prop_assert!(decode_png(&file).unwrap() == image);
-        }
+        let file = encoded(&image, &bands, false);
+        prop_assert!(decode_png(&file).unwrap() == image);
+        prop_assert!(file == encoded(&image, &bands, true), "without the pixels of bands of one colour");
     }
 
     #[test]
     fn no_image_takes_much_more_than_its_pixels(image in any_image()) {
         let n_bytes = encode_png(&image).unwrap().len();
         let bands = PngBands::new(image.width(), image.height()).unwrap();
-        let frame = 70 + 30 * bands.n_bands() as usize;
+        let frame = 70 + 70 * bands.n_bands() as usize;
         prop_assert!(n_bytes <= image.rgb().len() + image.height() as usize + frame, "{n_bytes}");
     }
 }

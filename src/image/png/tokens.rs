@@ -2,7 +2,7 @@
 
 use crate::image::png::adler::{Adler32, SparseSum};
 use crate::image::png::bits::{BitBuffer, BitWriter};
-use crate::image::png::code::{Bits, Code, HEADER_BYTES, MAX_MATCH, PIXEL_QUADS};
+use crate::image::png::code::{Bits, Code, HEADER_BYTES, MAX_MATCH};
 
 /// What a word takes at most with a run that one match holds before it, in bytes: eight literals of 12 bits, a match.
 const MAX_WORD_BYTES: usize = 16;
@@ -118,20 +118,20 @@ fn push_many_zeros(code: &Code, n: usize, bits: &mut BitWriter<'_>) {
 fn push_word(code: &Code, word: u64, n_padding: u32, bits: &mut BitWriter<'_>) {
     let padding_bits = n_padding * code.literals[0].n_bits();
     // Whether bits 1 to 7 of each byte are equal: −2, −1, 0 or 1.
-    if (word ^ word << 1) & splat(0xFC) == 0 {
-        push_quads(word, padding_bits, bits);
-    } else {
-        push_literals(code, word, padding_bits, bits);
+    let is_small = (word ^ word << 1) & splat(0xFC) == 0;
+    match code.quads {
+        Some(quads) if is_small => push_quads(quads, word, padding_bits, bits),
+        _ => push_literals(code, word, padding_bits, bits),
     }
 }
 
-/// Writes a word of bytes within −2…1 in the code of pixels, without the last bits, which are of zeros and so 0.
+/// Writes a word of bytes within −2…1, without the last bits, which are of zeros and so 0.
 #[inline(always)]
-fn push_quads(word: u64, padding_bits: u32, bits: &mut BitWriter<'_>) {
+fn push_quads(quads: &[Bits; 256], word: u64, padding_bits: u32, bits: &mut BitWriter<'_>) {
     let twos = word & splat(3);
     let fours = twos | twos >> 6;
     let eights = fours | fours >> 12;
-    let [low, high] = [eights, eights >> 32].map(|quad| PIXEL_QUADS[usize::from(quad as u8)]);
+    let [low, high] = [eights, eights >> 32].map(|quad| quads[usize::from(quad as u8)]);
     let n_bits = low.n_bits() + high.n_bits() - padding_bits;
     bits.push_value(low.value() | high.value() << low.n_bits(), n_bits);
     bits.flush();

@@ -35,8 +35,10 @@ pub struct SceneStats {
     /// Tree to valid program.
     #[serde(rename = "lower_seconds", serialize_with = "seconds")]
     pub lower: Duration,
+    /// Time of all threads, added up.
     #[serde(rename = "trace_seconds", serialize_with = "seconds")]
     trace: Duration,
+    /// Time of all threads, added up.
     #[serde(rename = "encode_seconds", serialize_with = "seconds")]
     encode: Duration,
     #[serde(rename = "save_seconds", serialize_with = "seconds")]
