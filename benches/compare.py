@@ -79,7 +79,16 @@ def takes_part(program, group, case):
 def measure(group, case, contenders, folder, args):
     """Measures one case; returns it as plain data."""
     commands = {program.name: program.command(case, folder) for program in contenders}
-    results = process.interleave(commands, args.rounds, args.budget, args.max_wait, args.real_time)
+    by_name = {program.name: program for program in contenders}
+
+    def remove_images(name):
+        """Replacing a file takes time that depends on what was in it."""
+        for image in by_name[name].images(folder):
+            image.unlink()
+
+    results = process.interleave(
+        commands, args.rounds, args.budget, args.max_wait, args.real_time, before_each=remove_images
+    )
     if case.side <= 1000:
         check_pictures(case, contenders, folder)
     return {
@@ -95,7 +104,7 @@ def measure(group, case, contenders, folder, args):
 
 def check_pictures(case, contenders, folder):
     """Sees to it that those who read `.cli` made the same picture."""
-    images = {program.name: program.image(case, folder) for program in contenders if hasattr(program, "image")}
+    images = {program.name: program.images(folder)[0] for program in contenders if program.reads_cli}
     ours = images.pop("clisc")
     for name, image in images.items():
         share = picture.share_of_different_pixels(ours, image)

@@ -1,6 +1,7 @@
 """One process: how long it takes, and how much memory it holds at most."""
 
 import ctypes
+import functools
 import os
 import time
 from dataclasses import dataclass
@@ -107,15 +108,17 @@ class Result:
         }
 
 
-def interleave(commands, rounds, budget_seconds, max_wait, real_time):
+def interleave(commands, rounds, budget_seconds, max_wait, real_time, before_each):
     """Runs the commands in turn, round after round; returns a `Result` for each name.
 
     `budget_seconds`: a program takes part in as many rounds as fit, but in one at least.
     `max_wait`: seconds to wait for a quiet machine before each run.
     `real_time`: whether short programs are run before all others; needs the right to.
+    `before_each`: is called before each run with the name of the program.
     """
     peaks, runs, n_rounds = {}, {}, {}
     for name, command in commands.items():
+        before_each(name)
         start = time.monotonic()
         peaks[name] = peak_mebibytes(command)
         seconds = time.monotonic() - start
@@ -125,16 +128,19 @@ def interleave(commands, rounds, budget_seconds, max_wait, real_time):
         for name, command in commands.items():
             if round_idx < n_rounds[name]:
                 is_short = all(run.seconds < MAX_REAL_TIME_SECONDS for run in runs[name]) and n_rounds[name] > 5
-                runs[name].append(_quiet_run(command, max_wait, real_time and is_short))
+                prepare = functools.partial(before_each, name)
+                runs[name].append(_quiet_run(command, max_wait, real_time and is_short, prepare))
     return {name: Result(runs[name], peaks[name]) for name in commands}
 
 
-def _quiet_run(command, max_wait, real_time):
+def _quiet_run(command, max_wait, real_time, prepare):
     """Runs a command, and once more when others disturbed it; returns the better run."""
+    prepare()
     wait_for_quiet(max_wait)
     first = run(command, real_time)
     if not first.is_dirty():
         return first
+    prepare()
     wait_for_quiet(max_wait)
     second = run(command, real_time)
     return min(first, second, key=lambda run: run.foreign_seconds / run.seconds)

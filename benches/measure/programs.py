@@ -19,6 +19,8 @@ class Case:
 class Clisc:
     """This project. It checks the scene and writes a PNG; `options` are more arguments."""
 
+    reads_cli = True
+
     def __init__(self, name, binary, options=()):
         self.name, self.binary, self.options = name, binary, list(options)
         self.shown = " ".join(["clisc run SCENE --quiet --size WxH --out-dir FOLDER", *options])
@@ -31,13 +33,15 @@ class Clisc:
         fixed = ["run", str(case.scene), "--quiet", "--size", size, "--out-dir", str(folder / self.name)]
         return [str(self.binary), *fixed, *self.options]
 
-    def image(self, case, folder):
-        """Returns the file that the command makes."""
-        return max((folder / self.name).glob("*.png"), key=lambda path: path.stat().st_mtime)
+    def images(self, folder):
+        """Returns the files that the command has made."""
+        return list((folder / self.name).glob("*.png"))
 
 
 class Native:
     """A peer that reads `.cli` itself and writes a PPM."""
+
+    reads_cli = True
 
     def __init__(self, name, binary, option, max_objects):
         self.name, self.binary, self.option, self.max_objects = name, binary, option, max_objects
@@ -47,14 +51,16 @@ class Native:
         return case.n_objects <= self.max_objects
 
     def command(self, case, folder):
-        return [str(self.binary), str(case.scene), f"{case.side}x{case.side}", str(self.image(case, folder)), self.option]
+        return [str(self.binary), str(case.scene), f"{case.side}x{case.side}", str(folder / f"{self.name}.ppm"), self.option]
 
-    def image(self, case, folder):
-        return folder / f"{self.name}.ppm"
+    def images(self, folder):
+        return list(folder.glob(f"{self.name}.ppm"))
 
 
 class Converted:
     """A peer with a language of its own; the translation is not timed."""
+
+    reads_cli = False
 
     def __init__(self, name, converter, suffix, arguments, max_objects):
         self.name, self.converter, self.suffix, self.arguments = name, converter, suffix, arguments
@@ -71,17 +77,24 @@ class Converted:
             subprocess.run(converter + ([str(case.side)] if self.suffix == ".dat" else []), check=True)
         return self.arguments(str(translated), str(case.side), str(folder / self.name))
 
+    def images(self, folder):
+        return list(folder.glob(f"{self.name}.ppm"))
+
 
 class Empty:
     """A program that does nothing: what it takes to start and end one."""
 
     name = shown = "true"
+    reads_cli = False
 
     def takes(self, case):
         return True
 
     def command(self, case, folder):
         return ["true"]
+
+    def images(self, folder):
+        return []
 
 
 def tachyon(scene, side, image):
