@@ -4,6 +4,8 @@ use std::hint::black_box;
 
 use clisc::image::encode_png;
 use clisc::ir;
+use clisc::plan;
+use clisc::source::Source;
 
 use crate::input;
 
@@ -23,6 +25,8 @@ pub const CASES: &[Case] = &[
     Case { name: "language/lex/1000", run: lex },
     Case { name: "language/parse/1000", run: parse },
     Case { name: "language/lower/1000", run: lower },
+    Case { name: "plan/small/still-life", run: || plan(&input::example("still-life")) },
+    Case { name: "plan/cloud/1000", run: || plan(&input::cloud(1000)) },
     Case { name: "encode/png/render", run: encode },
     Case { name: "image/small/candles", run: || image("candles") },
     Case { name: "image/small/still-life", run: || image("still-life") },
@@ -62,6 +66,12 @@ fn lower() {
     let source = input::cloud(1000);
     let file = clisc::syntax::parse(&source).file;
     measured(|| ir::validate(clisc::lower::lower(&source, &file).program));
+}
+
+fn plan(source: &Source) {
+    let program = input::program(source);
+    let view = input::view(&program);
+    measured(|| plan::plan(view, &input::square(300)));
 }
 
 fn encode() {

@@ -8,6 +8,7 @@ mod image;
 #[path = "../support/input.rs"]
 mod input;
 mod language;
+mod plan;
 
 fn main() {
     divan::main();

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use clisc::exec::{CancellationToken, MemorySink, Options, execute};
 use clisc::image::{RgbImage, decode_png};
-use clisc::ir::{self, Valid};
+use clisc::ir::{self, Registers, SceneView, Valid};
 use clisc::plan::{Settings, Size};
 use clisc::source::Source;
 use clisc::testing::Stream;
@@ -75,6 +75,13 @@ pub fn program(source: &Source) -> Valid {
     let compilation = clisc::compile(source);
     assert!(!compilation.has_errors(), "{}: {:?}", source.name(), compilation.diagnostics);
     ir::validate(compilation.program).expect("lowering reports what would be refused here")
+}
+
+/// Returns the scene as the last `write` of a program sees it.
+pub fn view(program: &Valid) -> SceneView<'_> {
+    let mut registers = Registers::default();
+    program.commands.iter().for_each(|command| registers.step(command));
+    SceneView::new(program, registers)
 }
 
 /// Renders the last image of a program, through the executor into memory: the bytes of its PNG file.
