@@ -19,8 +19,8 @@ use crate::support::{Call, Folder, scene};
 /// Longer than any wait here should take.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// An image of this size takes seconds and some megabytes.
-const BIG: &str = "9000x9000";
+/// An image of this size takes longer than any test waits, and some megabytes.
+const BIG: &str = "40000x40000";
 
 /// The user of whom every system knows that it owns nothing.
 const NOBODY: u32 = 65534;
