@@ -214,7 +214,7 @@ impl Observer for Saboteur<'_> {
 }
 
 /// So many that each thread has bands of its own, and that all share rows.
-const THREADS: [usize; 3] = [1, 3, 40];
+const THREADS: [usize; 3] = [1, 3, 60];
 
 #[test]
 fn a_cancelled_image_is_not_committed() {

@@ -17,9 +17,9 @@ use crate::exec::{Event, ExecError, WriteReport};
 use crate::image::{EncodedBand, PngBands, PngWriter};
 use crate::trace::{Counts, Tracer};
 
-/// Threads take bands of their own if there are so many for each: then a thread that has none left waits at most for an
-/// eighth of the whole.
-const MIN_BANDS_PER_THREAD: usize = 8;
+/// Threads take bands of their own if there are so many for each: a thread that finds none left waits at most as long as
+/// one takes.
+const MIN_BANDS_PER_THREAD: usize = 4;
 
 /// Threads take bands of their own if these have at most so many samples: some seconds of a hard scene.
 const MAX_BAND_SAMPLES: u64 = 1 << 22;

@@ -98,7 +98,7 @@ pub fn decode_png(bytes: &[u8]) -> Result<RgbImage, DecodeError> {
 /// Writes an image as a PNG file, the same bytes as [`PngStream`] makes of its rows.
 ///
 /// # Errors
-/// When a side is 0.
+/// When a side is 0 or above [`PngBands::MAX_SIDE`](crate::image::PngBands::MAX_SIDE).
 pub fn encode_png(image: &RgbImage) -> io::Result<Vec<u8>> {
     let mut stream = PngStream::new(Vec::new(), image.width, image.height)?;
     stream.write_rows(&image.rgb)?;
