@@ -288,8 +288,8 @@ fn results_that_cannot_be_written_are_a_fault() {
 
 #[test]
 fn a_large_image_takes_no_more_memory_than_a_small_one() {
-    let folder = Folder::with_scene("fov 60\nbackground .5 .5 .5\nwrite a.png\n");
-    // 9.6 MB and 79 MB of pixels.
+    let folder = Folder::with_scene(&scene("a.png"));
+    // 9.6 MB and 79 MB of pixels, nearly half of them in rows that must be traced.
     let [small, large] = ["8000x400", "65535x400"].map(|size| {
         let args = ["run", "a.cli", "--size", size, "--threads", "2"];
         let mut child = watched(&folder, &args).spawn().unwrap();
