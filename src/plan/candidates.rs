@@ -123,6 +123,20 @@ impl ObjectLists {
         }
     }
 
+    /// Leaves out everything.
+    pub fn clear(&mut self) {
+        self.spheres.clear();
+        self.cylinders.clear();
+    }
+
+    /// Adds an object.
+    pub fn push(&mut self, object: Object) {
+        match object {
+            Object::Sphere(i) => self.spheres.push(i),
+            Object::Cylinder(i) => self.cylinders.push(i),
+        }
+    }
+
     /// Returns the lists as candidates.
     #[must_use]
     pub fn as_candidates(&self) -> Candidates<'_> {

@@ -16,6 +16,7 @@ mod objects;
 mod passes;
 mod report;
 mod scene;
+mod search;
 mod settings;
 mod shadows;
 mod solid;
@@ -27,6 +28,7 @@ pub use candidates::{Candidates, Object, ObjectLists};
 pub use passes::{Pass, Passes};
 pub use report::{Kept, LeftOut, Reason, Report};
 pub use scene::{CylinderLanes, Light, Primitive, Scene, SphereLanes};
+pub use search::Search;
 pub use settings::{Part, SampleAt, Settings, Size};
 pub use solid::Faces;
 pub use terms::{Exponent, Terms};
@@ -34,6 +36,7 @@ pub use tiles::Tiles;
 
 use crate::ir::{Handle, SceneView, Surface};
 use crate::plan::analysis::{Analysis, analyse};
+use crate::plan::search::AroundLights;
 
 /// Programs with more surfaces have the needs of each found out when it is asked for.
 const MAX_STORED_TERMS: usize = 4096;
@@ -55,6 +58,9 @@ pub struct Plan<'p> {
     terms: Vec<Terms>,
     /// What is known of the objects, unless they are too many.
     known: Option<Analysis>,
+    /// How rays other than those from the eye find what they may meet.
+    pub search: Search,
+    around_lights: AroundLights,
     /// Everything in the scene.
     everything: ObjectLists,
     /// What reflected rays can meet.
@@ -79,7 +85,10 @@ pub fn plan<'p>(view: SceneView<'p>, settings: &Settings) -> Plan<'p> {
         Some(known) => ObjectLists::of_all(&scene, |i| known.roles.mirrored[i]),
         None => everything.clone(),
     };
+    let search = Search::new(&scene);
     Plan {
+        search,
+        around_lights: AroundLights::new(&scene, search, settings),
         settings: settings.clone(),
         fov_deg: view.fov_deg(),
         tiles: Tiles::new(&scene, view.fov_deg(), settings),
@@ -130,6 +139,23 @@ impl Plan<'_> {
             None => self.scene.solid(object),
         };
         shadows::may_lie_between(region, self.scene.lights[light_idx].position, &solid)
+    }
+
+    /// Calls `visit` with each object that may have a point strictly between a light and another point, until it answers
+    /// `true`, and tells whether it did; `None` when they are not looked up: then [`Plan::occluders`] are to be tested. An
+    /// object may come several times.
+    ///
+    /// `light_idx`: in [`Scene::lights`]. `from_light`: from the light to the point. `error`: how far each of its coordinates
+    /// may be off.
+    #[inline]
+    pub fn visit_between(
+        &self,
+        light_idx: usize,
+        from_light: [f64; 3],
+        error: f64,
+        visit: impl FnMut(Object) -> bool,
+    ) -> Option<bool> {
+        self.around_lights.visit_between(light_idx, from_light, error, visit)
     }
 
     /// Returns what a reflected ray can meet.

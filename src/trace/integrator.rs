@@ -1,7 +1,7 @@
 //! The colour of an eye ray: from hit to hit along the mirror directions, and back.
 
 use crate::math::{Real, Vector};
-use crate::plan::{Candidates, Object, Part, Plan};
+use crate::plan::{Candidates, Object, ObjectLists, Part, Plan};
 use crate::trace::judge::{Doubt, Judge};
 use crate::trace::ray::{Leaving, Ray};
 use crate::trace::shade::HitPoint;
@@ -14,6 +14,8 @@ pub struct Integrator<'a, 'p, R> {
     pub judge: Judge,
     /// The primitives that the kernels kept for the ray at hand.
     pub(super) kept: Vec<u32>,
+    /// What was looked up for the ray at hand.
+    pub(super) found: ObjectLists,
     /// The hits of the ray so far, outermost first.
     bounces: Vec<Bounce<R>>,
 }
@@ -36,7 +38,7 @@ enum End<R> {
 impl<'a, 'p, R: Real> Integrator<'a, 'p, R> {
     /// Makes an integrator that has counted nothing yet.
     pub fn new(plan: &'a Plan<'p>) -> Self {
-        Self { plan, judge: Judge::default(), kept: Vec::new(), bounces: Vec::new() }
+        Self { plan, judge: Judge::default(), kept: Vec::new(), found: ObjectLists::default(), bounces: Vec::new() }
     }
 
     /// Returns the colour of an eye ray, each channel clamped to 0…1.

@@ -1,5 +1,7 @@
 //! The colour that a hit has by itself: ambient, diffuse and specular light.
 
+use std::mem;
+
 use glam::DVec3;
 
 use crate::ir::{EquationId, Surface};
@@ -105,8 +107,22 @@ impl<R: Real> Integrator<'_, '_, R> {
         }
         self.judge.counts.shadow_rays += 1;
         let leaving = Leaving { equation: at.equation, inward: at.from_inside };
-        let among = self.plan.occluders(at.object, light_idx);
-        self.occluded(&Ray { origin: at.point, dir: to_light, leaving: Some(leaving) }, among)
+        let ray = Ray { origin: at.point, dir: to_light, leaving: Some(leaving) };
+        let kernel_ray = ray.for_kernel();
+        let mut found = mem::take(&mut self.found);
+        found.clear();
+        let looked_up =
+            self.plan.visit_between(light_idx, kernel_ray.dir.map(|d| -d), kernel_ray.dir_error, |object| {
+                found.push(object);
+                false
+            });
+        let among = match looked_up {
+            Some(_) => found.as_candidates(),
+            None => self.plan.occluders(at.object, light_idx),
+        };
+        let answer = self.occluded(&ray, among);
+        self.found = found;
+        answer
     }
 }
 

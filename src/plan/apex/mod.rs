@@ -6,9 +6,12 @@
 //! Never here: which points the apexes are, and which rays look (see [`tiles`](crate::plan::Tiles)).
 
 mod bins;
+mod cube;
+mod grid;
 mod outline;
 
 pub(super) use bins::{Bins, Cells};
+pub(super) use cube::Cube;
 pub(super) use outline::Outline;
 
 /// Half an ulp of 1.

@@ -40,6 +40,17 @@ impl Outline {
         let slopes = [disc_slopes(u, ahead, radius)?, box_slopes(heights, [ahead - radius, ahead + radius])];
         Some(Self { slopes, near: nearest(ahead, radius) })
     }
+
+    /// Returns the outline of a cylinder along whose axis the apex looks; `None` when no point of it is ahead.
+    ///
+    /// `axis`: from the apex, the two coordinates across. `ahead`: of its two caps, from the apex, rounded outward.
+    pub fn of_cylinder_from_below(axis: [f64; 2], radius: f64, ahead: [f64; 2]) -> Option<Self> {
+        if ahead[1] <= 0.0 {
+            return None;
+        }
+        let slopes = axis.map(|across| box_slopes([(across - radius).next_down(), (across + radius).next_up()], ahead));
+        Some(Self { slopes, near: ahead[0].max(0.0) })
+    }
 }
 
 /// Returns a lower bound of ahead − radius, at least 0.

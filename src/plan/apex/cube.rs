@@ -1,0 +1,313 @@
+//! A cube of grids around a point: what lies between the point and others.
+//!
+//! The point looks along each axis in both directions, through the six faces of a cube. What it sees through a face is
+//! sorted into grids ([`Grid`]), as [`Spot`]s. A query goes through the face of its largest coordinate, where both slopes
+//! are at most 1; its error may add a little, which faces overlap by ([`LIMIT`]).
+
+use rayon::prelude::*;
+
+use crate::plan::apex::grid::{Axis, Grid, Query, Spot, cell};
+use crate::plan::apex::{Outline, ROUNDOFF};
+use crate::plan::{Object, Scene};
+
+/// Faces reach to slopes of this, 1 + 2⁻¹⁰.
+const LIMIT: f64 = 1.0 + 1.0 / 1024.0;
+
+/// A query must lead this many times as far as it is off, 2¹³: then its slopes are off by less than 2⁻¹¹.
+const MIN_PRECISION: f64 = 8192.0;
+
+/// Queries that lead less far are not looked up: their error bounds could underflow.
+const SHORTEST: f64 = f64::from_bits((1023 - 500) << 52);
+
+/// Objects that a thread takes at a time.
+const OBJECTS_PER_TASK: usize = 1 << 14;
+
+/// Objects from which on a face is cut into strips for several threads.
+const STRIPS_FROM: usize = 1 << 14;
+
+/// The six faces around a point.
+#[derive(Debug)]
+pub struct Cube {
+    faces: [Option<Face>; 6],
+    n_spheres: u32,
+}
+
+/// One face: strips of grids, one behind the other along the second axis.
+#[derive(Debug)]
+struct Face {
+    strips: Axis,
+    grids: Vec<Grid>,
+}
+
+/// Which coordinates a face looks across and ahead, and whether ahead is backward.
+#[derive(Clone, Copy)]
+struct Frame {
+    across: [usize; 2],
+    ahead: usize,
+    sign: f64,
+}
+
+impl Frame {
+    /// Cylinders stand along y, which is the second axis across where it can be.
+    fn of_face(face: usize) -> Self {
+        let (across, ahead) = [([2, 1], 0), ([0, 2], 1), ([0, 1], 2)][face / 2];
+        Self { across, ahead, sign: [1.0, -1.0][face % 2] }
+    }
+
+    /// Returns the coordinates across and ahead.
+    fn look(self, v: [f64; 3]) -> [f64; 3] {
+        [v[self.across[0]], v[self.across[1]], self.sign * v[self.ahead]]
+    }
+}
+
+impl Cube {
+    /// Sorts the objects of a scene into the grids around a point.
+    pub fn new(scene: &Scene<'_>, apex: [f64; 3]) -> Self {
+        let n_spheres = scene.spheres.radius.len();
+        let n_objects = n_spheres + scene.cylinders.radius.len();
+        let chunks = (0..n_objects).into_par_iter().step_by(OBJECTS_PER_TASK);
+        let spots: Vec<_> = chunks
+            .map(|first| {
+                let mut faces = [const { Vec::new() }; 6];
+                for i in first..n_objects.min(first + OBJECTS_PER_TASK) {
+                    match i.checked_sub(n_spheres) {
+                        None => add_sphere(scene, apex, i, &mut faces),
+                        Some(cylinder_idx) => add_cylinder(scene, apex, cylinder_idx, i as u32, &mut faces),
+                    }
+                }
+                faces
+            })
+            .collect();
+        let faces: Vec<_> = (0..6)
+            .into_par_iter()
+            .map(|face| {
+                let spots: Vec<Spot> = spots.iter().flat_map(|faces| faces[face].iter().copied()).collect();
+                (!spots.is_empty()).then(|| Face::new(&spots))
+            })
+            .collect();
+        Self { faces: faces.try_into().expect("six faces"), n_spheres: n_spheres as u32 }
+    }
+
+    /// Calls `visit` with each object that may have a point strictly between the apex and another point, until it answers
+    /// `true`, and tells whether it did; `None` when the error is too large to tell which objects those are. An object may
+    /// come several times.
+    ///
+    /// `to_point`: from the apex to the other point. `error`: how far each of its coordinates may be off.
+    pub fn visit(&self, to_point: [f64; 3], error: f64, mut visit: impl FnMut(Object) -> bool) -> Option<bool> {
+        let (face, query) = query(to_point, error)?;
+        let Some(face) = &self.faces[face] else { return Some(false) };
+        let mut visit = |i: u32| {
+            visit(match i.checked_sub(self.n_spheres) {
+                None => Object::Sphere(i),
+                Some(i) => Object::Cylinder(i),
+            })
+        };
+        let [first, last] = [query.low[1], query.high[1]].map(|slope| cell(face.strips.place(slope)));
+        Some(face.grids[first..=last].iter().any(|grid| grid.visit(&query, &mut visit)))
+    }
+}
+
+/// Returns the face that a segment from the apex goes through, and where.
+///
+/// With w the coordinate ahead, s one of the slopes and e the error, the exact slope is off from s by at most
+/// e·(1 + |s|)/(w − e), which is below 3e/w, and two roundings.
+#[inline]
+fn query(to_point: [f64; 3], error: f64) -> Option<(usize, Query)> {
+    let [x, y, z] = to_point.map(f64::abs);
+    let axis = if x >= y && x >= z {
+        0
+    } else if y >= z {
+        1
+    } else {
+        2
+    };
+    let face = 2 * axis + usize::from(to_point[axis] < 0.0);
+    let [u, v, ahead] = Frame::of_face(face).look(to_point);
+    // Also false for what is no number.
+    if !(ahead >= MIN_PRECISION * error && ahead >= SHORTEST && ahead.is_finite()) {
+        return None;
+    }
+    let inverse = 1.0 / ahead;
+    let slopes = [u * inverse, v * inverse];
+    let slack = 4.0 * error * inverse + 8.0 * ROUNDOFF;
+    let far = (ahead + error) as f32;
+    Some((face, Query { low: slopes.map(|s| s - slack), high: slopes.map(|s| s + slack), far: far.next_up() }))
+}
+
+/// Appends a sphere to the faces that see it.
+fn add_sphere(scene: &Scene<'_>, apex: [f64; 3], i: usize, faces: &mut [Vec<Spot>; 6]) {
+    let spheres = &scene.spheres;
+    let center = [spheres.x[i] - apex[0], spheres.y[i] - apex[1], spheres.z[i] - apex[2]];
+    // The subtraction may have moved the centre; a sphere that is larger by as much holds the exact one.
+    let moved = ROUNDOFF * center.map(f64::abs).iter().sum::<f64>();
+    let radius = (spheres.radius[i] + 2.0 * moved) * (1.0 + 4.0 * ROUNDOFF);
+    for (face, spots) in faces.iter_mut().enumerate() {
+        let local = Frame::of_face(face).look(center);
+        let [u, v, ahead] = local;
+        // Beyond the plane slope = LIMIT, from which the centre is this far times √2.
+        if u.abs().max(v.abs()) - LIMIT * ahead > 1.5 * radius {
+            continue;
+        }
+        spots.extend(Outline::of_sphere(local, radius).and_then(|outline| spot(&outline, i as u32)));
+    }
+}
+
+/// Appends a cylinder to the faces that see it.
+fn add_cylinder(scene: &Scene<'_>, apex: [f64; 3], i: usize, object: u32, faces: &mut [Vec<Spot>; 6]) {
+    let cylinders = &scene.cylinders;
+    let axis = [cylinders.x[i] - apex[0], 0.0, cylinders.z[i] - apex[2]];
+    let moved = ROUNDOFF * (axis[0].abs() + axis[2].abs());
+    let radius = (cylinders.radius[i] + 2.0 * moved) * (1.0 + 4.0 * ROUNDOFF);
+    let heights = [(cylinders.y_min[i] - apex[1]).next_down(), (cylinders.y_max[i] - apex[1]).next_up()];
+    for (face, spots) in faces.iter_mut().enumerate() {
+        let frame = Frame::of_face(face);
+        let [u, v, ahead] = frame.look(axis);
+        let outline = match (frame.ahead, frame.sign > 0.0) {
+            (1, true) => Outline::of_cylinder_from_below([u, v], radius, heights),
+            (1, false) => Outline::of_cylinder_from_below([u, v], radius, [-heights[1], -heights[0]]),
+            _ => Outline::of_upright_cylinder([u, ahead], radius, heights),
+        };
+        spots.extend(outline.and_then(|outline| spot(&outline, object)));
+    }
+}
+
+/// Returns what a face sees of an outline, if it does.
+fn spot(outline: &Outline, object: u32) -> Option<Spot> {
+    let [[u_low, u_high], [v_low, v_high]] = outline.slopes;
+    let is_seen = u_low.max(v_low) <= LIMIT && u_high.min(v_high) >= -LIMIT;
+    let down = |number: f64| {
+        let rounded = number as f32;
+        if f64::from(rounded) > number { rounded.next_down() } else { rounded }
+    };
+    is_seen.then(|| Spot {
+        low: [down(u_low), down(v_low)],
+        high: [-down(-u_high), -down(-v_high)],
+        near: down(outline.near),
+        object,
+    })
+}
+
+impl Face {
+    fn new(spots: &[Spot]) -> Self {
+        let extremes = |k: usize| {
+            let low = spots.iter().fold(f64::INFINITY, |low, spot| low.min(f64::from(spot.low[k])));
+            let high = spots.iter().fold(f64::NEG_INFINITY, |high, spot| high.max(f64::from(spot.high[k])));
+            [low.max(-LIMIT), high.min(LIMIT)]
+        };
+        let [u, v] = [extremes(0), extremes(1)];
+        let n_strips = if spots.len() < STRIPS_FROM { 1 } else { 2 * rayon::current_num_threads() as u32 };
+        let strips = Axis::new(v, n_strips);
+        let grid = |strip: usize| {
+            let is_in = |spot: &&Spot| {
+                cell(strips.place(spot.low[1].into())) <= strip && strip <= cell(strips.place(spot.high[1].into()))
+            };
+            match n_strips {
+                1 => Grid::new(spots, [u, v]),
+                _ => Grid::new(&spots.iter().filter(is_in).copied().collect::<Vec<_>>(), [u, strips.range(strip)]),
+            }
+        };
+        Self { strips, grids: (0..n_strips as usize).into_par_iter().map(grid).collect() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::math::DoubleDouble;
+    use crate::plan::{CylinderLanes, SphereLanes};
+    use crate::testing::Stream;
+
+    #[test]
+    fn a_face_is_looked_at_along_its_largest_coordinate() {
+        for (face, to_point) in
+            [[3.0, 1.0, 2.0], [-3.0, 1.0, 2.0], [1.0, 3.0, 2.0], [1.0, -3.0, 2.0], [2.0, 1.0, 3.0], [2.0, -1.0, -3.0]]
+                .into_iter()
+                .enumerate()
+        {
+            let (found, query) = query(to_point, 1e-12).expect("precise enough");
+            assert_eq!(found, face);
+            let slopes = Frame::of_face(face).look(to_point);
+            for k in 0..2 {
+                let slope = slopes[k] / slopes[2];
+                assert!(query.low[k] < slope && slope < query.high[k] && query.high[k] - query.low[k] < 1e-11);
+            }
+            assert!(query.far > 3.0 && query.far < 3.001);
+        }
+        assert!(query([1.0, 0.5, 0.5], 1e-3).is_none() && query([0.0; 3], 0.0).is_none());
+        assert!(query([f64::NAN; 3], 0.0).is_none() && query([1.0; 3], f64::INFINITY).is_none());
+    }
+
+    fn scene_of(spheres: SphereLanes, cylinders: CylinderLanes) -> Scene<'static> {
+        Scene {
+            background: DVec3::ZERO,
+            lights: Vec::new(),
+            surfaces: &[],
+            spheres,
+            sphere_primitives: Vec::new(),
+            sphere_equations: &[],
+            cylinders,
+            cylinder_primitives: Vec::new(),
+            wall_equations: &[],
+            cap_equations: &[],
+        }
+    }
+
+    fn finds_one(cube: &Cube, apex: [f64; 3], point: [f64; 3]) -> bool {
+        let to_point: [f64; 3] = std::array::from_fn(|k| point[k] - apex[k]);
+        let error = to_point.map(f64::abs).into_iter().fold(0.0, f64::max) * ROUNDOFF;
+        cube.visit(to_point, error, |_| true).unwrap_or(true)
+    }
+
+    /// The silhouette of a sphere, or of the wall of a cylinder, runs through the point, inside of it by a rounding.
+    #[test]
+    fn what_a_segment_grazes_is_found() {
+        let mut stream = Stream::new(31);
+        let mut n_tested = 0;
+        for round in 0..60_000 {
+            let mut vector = |size: f64| [0; 3].map(|_| size * stream.between(-1.0, 1.0));
+            let (apex, point) = (vector(1.0), vector(1.0));
+            let aside = vector(1.0);
+            let size = libm::exp2(stream.between(-35.0, 1.0));
+            let share = stream.between(0.01, 0.99);
+            let center: [f64; 3] = std::array::from_fn(|k| apex[k] + share * (point[k] - apex[k]) + size * aside[k]);
+            // Above and in the plane of the axis: a cylinder is a sphere that has no height.
+            let is_sphere = round % 2 == 0;
+            let exact = |a: f64, b: f64| DoubleDouble::sum(a, -b);
+            let mut d: [_; 3] = std::array::from_fn(|k| exact(point[k], apex[k]));
+            let mut m: [_; 3] = std::array::from_fn(|k| exact(center[k], apex[k]));
+            if !is_sphere {
+                (d[1], m[1]) = (DoubleDouble::ZERO, DoubleDouble::ZERO);
+            }
+            let cross: [_; 3] = std::array::from_fn(|k| {
+                let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+                m[i] * d[j] - m[j] * d[i]
+            });
+            let squared = |a: [DoubleDouble; 3]| a[0].square() + a[1].square() + a[2].square();
+            let radius = (squared(cross) / squared(d)).sqrt().hi().next_up();
+            let along = ((m[0] * d[0] + m[1] * d[1] + m[2] * d[2]) / squared(d)).hi();
+            if !(0.0..=1.0).contains(&along) || radius < 1e-9 * size {
+                continue;
+            }
+            n_tested += 1;
+            let height = apex[1] + along * (point[1] - apex[1]);
+            let slack = 1e-15;
+            let scene = match is_sphere {
+                true => {
+                    let [x, y, z] = center.map(|c| vec![c]);
+                    scene_of(SphereLanes { x, y, z, radius: vec![radius] }, CylinderLanes::default())
+                }
+                false => {
+                    let [low, high] = [[height - slack, height + size], [height - size, height + slack]][round / 2 % 2];
+                    let (x, z) = (vec![center[0]], vec![center[2]]);
+                    let lanes = CylinderLanes { x, z, radius: vec![radius], y_min: vec![low], y_max: vec![high] };
+                    scene_of(SphereLanes::default(), lanes)
+                }
+            };
+            let cube = Cube::new(&scene, apex);
+            assert!(finds_one(&cube, apex, point), "{apex:?} {point:?} {center:?} {radius} {is_sphere}");
+        }
+        assert!(n_tested > 30_000);
+    }
+}

@@ -1,0 +1,52 @@
+//! How rays find what they may meet.
+
+use crate::plan::apex::Cube;
+use crate::plan::{Object, Part, Pass, Scene, Settings};
+
+/// How rays other than those from the eye find what they may meet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Search {
+    /// There are few objects: a packet of rays goes through a list of candidates.
+    Lists,
+    /// There are many: a shadow ray looks into the grids around its light, a reflected ray walks a tree.
+    Structures,
+}
+
+/// From so many objects on, looking up pays.
+const MANY: usize = 64;
+
+impl Search {
+    /// Chooses for a scene.
+    pub(super) fn new(scene: &Scene<'_>) -> Self {
+        if scene.sphere_primitives.len() + scene.cylinder_primitives.len() < MANY {
+            Self::Lists
+        } else {
+            Self::Structures
+        }
+    }
+}
+
+/// What can lie between each light and anything else; nothing is known when it is empty.
+#[derive(Debug, Default)]
+pub(super) struct AroundLights(Vec<Cube>);
+
+impl AroundLights {
+    /// Makes the grids around each light, if shadow rays look there.
+    pub fn new(scene: &Scene<'_>, search: Search, settings: &Settings) -> Self {
+        let is_used =
+            search == Search::Structures && settings.part == Part::B && settings.passes.contains(Pass::Shadows);
+        let cubes = scene.lights.iter().filter(|_| is_used).map(|light| Cube::new(scene, light.position.to_array()));
+        Self(cubes.collect())
+    }
+
+    /// See [`Plan::visit_between`](crate::plan::Plan::visit_between).
+    pub fn visit_between(
+        &self,
+        light_idx: usize,
+        from_light: [f64; 3],
+        error: f64,
+        visit: impl FnMut(Object) -> bool,
+    ) -> Option<bool> {
+        self.0.get(light_idx)?.visit(from_light, error, visit)
+    }
+}

@@ -1,0 +1,100 @@
+//! What is left out of a search changes no pixel: scenes of many objects, with and without the passes.
+
+mod families;
+
+use clisc::plan::{Passes, Search, Settings, Size, plan};
+use clisc::testing::Stream;
+use clisc::trace::Tracer;
+
+use families::sketch::{Finish, Sketch};
+
+const WIDTH: u32 = 40;
+const HEIGHT: u32 = 30;
+
+/// What a crowd is like.
+#[derive(Clone, Copy, Debug)]
+struct Crowd {
+    n_objects: usize,
+    /// The size of the smallest and of the largest objects.
+    sizes: [f64; 2],
+    /// How closely they are packed: 1 for not at all.
+    cluster: f64,
+    /// Where they lie along the view.
+    depths: [f64; 2],
+    /// One object in so many is a cylinder.
+    cylinders: usize,
+}
+
+fn sketch(crowd: &Crowd, stream: &mut Stream) -> Sketch {
+    let mut sketch = Sketch::new(60.0, [0.2, 0.3, 0.5]);
+    for position in [[3.0, 4.0, 1.0], [-0.3, 0.2, -3.0], [0.0, 0.0, 0.0], [0.0, -9.0, -4.0]] {
+        sketch.light([0.4, 0.3, 0.2], position);
+    }
+    let centers: Vec<[f64; 3]> = (0..4).map(|_| place(stream, crowd.depths)).collect();
+    for i in 0..crowd.n_objects {
+        if i % 10 == 0 {
+            sketch.surface(finish(stream));
+        }
+        let [x, y, z] = place(stream, crowd.depths);
+        let center = centers[stream.below(centers.len())];
+        let blend = |k: usize, c: f64| center[k] + crowd.cluster * (c - center[k]);
+        let (x, y, z) = (blend(0, x), blend(1, y), blend(2, z));
+        let exponents = crowd.sizes.map(f64::log2);
+        let size = libm::exp2(stream.between(exponents[0], exponents[1]));
+        if i % crowd.cylinders == 0 {
+            sketch.cylinder(size, [x, z], [y, y + 2.0 * size]);
+        } else {
+            sketch.sphere([x, y, z], size);
+        }
+    }
+    sketch
+}
+
+fn place(stream: &mut Stream, depths: [f64; 2]) -> [f64; 3] {
+    let z = stream.between(depths[0], depths[1]);
+    let width = 0.7 * z.abs() + 0.1;
+    [stream.between(-width, width), stream.between(-width, width), z]
+}
+
+fn finish(stream: &mut Stream) -> Finish {
+    Finish {
+        ambient: [0.1, 0.05, 0.1],
+        diffuse: [stream.unit(), 0.5, 0.4],
+        specular: [0.3; 3],
+        shininess: 20.0,
+        reflectance: [0.0, 0.0, 0.4][stream.below(3)],
+    }
+}
+
+fn render(sketch: &Sketch, passes: Passes) -> (Search, Vec<u8>) {
+    let size = Size::new(WIDTH, HEIGHT).expect("a size within the limits");
+    let made = sketch.make();
+    let plan = plan(made.view(), &Settings { size, passes, ..Settings::default() });
+    let search = plan.search;
+    let mut rgb = vec![0; (WIDTH * HEIGHT * 3) as usize];
+    Tracer::new(plan).render_rows(0..HEIGHT, &mut rgb);
+    (search, rgb)
+}
+
+#[test]
+fn searching_changes_no_pixel() {
+    let usual = Crowd { n_objects: 300, sizes: [0.02, 0.2], cluster: 1.0, depths: [-9.0, -2.0], cylinders: 4 };
+    let crowds = [
+        usual,
+        Crowd { n_objects: 90, sizes: [0.2, 1.0], ..usual },
+        Crowd { n_objects: 3000, sizes: [0.005, 0.05], cylinders: 7, ..usual },
+        Crowd { n_objects: 1000, sizes: [1e-4, 0.1], cluster: 0.05, ..usual },
+        Crowd { n_objects: 1000, sizes: [1e-6, 0.01], cluster: 0.001, cylinders: 5000, ..usual },
+        Crowd { n_objects: 200, sizes: [0.01, 20.0], ..usual },
+        Crowd { n_objects: 400, sizes: [0.01, 0.5], depths: [-3.0, 3.0], ..usual },
+        Crowd { n_objects: 100, sizes: [2.0, 30.0], depths: [-3.0, 3.0], cylinders: 2, ..usual },
+    ];
+    for (seed, crowd) in (0..).zip(&crowds) {
+        let sketch = sketch(crowd, &mut Stream::new(seed));
+        let (search, with) = render(&sketch, Passes::all());
+        let (_, without) = render(&sketch, Passes::none());
+        assert_eq!(search, Search::Structures, "{crowd:?}");
+        let n_different = with.chunks(3).zip(without.chunks(3)).filter(|(a, b)| a != b).count();
+        assert_eq!(n_different, 0, "{crowd:?}: of {} pixels", WIDTH * HEIGHT);
+    }
+}
