@@ -22,6 +22,7 @@ mod shadows;
 mod solid;
 mod terms;
 mod tiles;
+mod tree;
 
 pub use bodies::Region;
 pub use candidates::{Candidates, Object, ObjectLists};
@@ -33,10 +34,11 @@ pub use settings::{Part, SampleAt, Settings, Size};
 pub use solid::Faces;
 pub use terms::{Exponent, Terms};
 pub use tiles::Tiles;
+pub use tree::SearchRay;
 
 use crate::ir::{Handle, SceneView, Surface};
 use crate::plan::analysis::{Analysis, analyse};
-use crate::plan::search::AroundLights;
+use crate::plan::search::{AlongRays, AroundLights};
 
 /// Programs with more surfaces have the needs of each found out when it is asked for.
 const MAX_STORED_TERMS: usize = 4096;
@@ -61,6 +63,7 @@ pub struct Plan<'p> {
     /// How rays other than those from the eye find what they may meet.
     pub search: Search,
     around_lights: AroundLights,
+    along_rays: AlongRays,
     /// Everything in the scene.
     everything: ObjectLists,
     /// What reflected rays can meet.
@@ -89,6 +92,7 @@ pub fn plan<'p>(view: SceneView<'p>, settings: &Settings) -> Plan<'p> {
     Plan {
         search,
         around_lights: AroundLights::new(&scene, search, settings),
+        along_rays: AlongRays::new(&scene, search, settings),
         settings: settings.clone(),
         fov_deg: view.fov_deg(),
         tiles: Tiles::new(&scene, view.fov_deg(), settings),
@@ -156,6 +160,14 @@ impl Plan<'_> {
         visit: impl FnMut(Object) -> bool,
     ) -> Option<bool> {
         self.around_lights.visit_between(light_idx, from_light, error, visit)
+    }
+
+    /// Calls `visit` with each object that a reflected ray may meet, roughly from near to far, and is told by it up to which
+    /// t meetings still matter, below 0 for none; `None` when they are not looked up: then [`Plan::mirrored`] is to be
+    /// tested.
+    #[inline]
+    pub fn visit_along(&self, ray: &SearchRay, visit: impl FnMut(Object) -> f64) -> Option<()> {
+        self.along_rays.visit_along(ray, visit)
     }
 
     /// Returns what a reflected ray can meet.

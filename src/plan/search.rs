@@ -1,6 +1,7 @@
 //! How rays find what they may meet.
 
 use crate::plan::apex::Cube;
+use crate::plan::tree::{Forest, SearchRay};
 use crate::plan::{Object, Part, Pass, Scene, Settings};
 
 /// How rays other than those from the eye find what they may meet.
@@ -48,5 +49,29 @@ impl AroundLights {
         visit: impl FnMut(Object) -> bool,
     ) -> Option<bool> {
         self.0.get(light_idx)?.visit(from_light, error, visit)
+    }
+}
+
+/// What reflected rays can meet.
+#[derive(Debug)]
+pub(super) struct AlongRays(Option<Forest>);
+
+impl AlongRays {
+    /// Makes the trees, if there are reflected rays and they look there.
+    pub fn new(scene: &Scene<'_>, search: Search, settings: &Settings) -> Self {
+        let has_mirrors = || {
+            let mut primitives = scene.sphere_primitives.iter().chain(&scene.cylinder_primitives);
+            primitives.any(|primitive| scene.surface(*primitive).reflectance > 0.0)
+        };
+        let is_used = search == Search::Structures
+            && settings.part == Part::B
+            && settings.passes.contains(Pass::Objects)
+            && has_mirrors();
+        Self(is_used.then(|| Forest::new(scene)))
+    }
+
+    /// See [`Plan::visit_along`](crate::plan::Plan::visit_along).
+    pub fn visit_along(&self, ray: &SearchRay, visit: impl FnMut(Object) -> f64) -> Option<()> {
+        self.0.as_ref()?.visit(ray, visit)
     }
 }
