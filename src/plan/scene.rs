@@ -230,3 +230,22 @@ fn scale_to_unit(view: &SceneView<'_>, cylinders: &[ir::Cylinder]) -> f64 {
     // 2^1022 is the largest power whose reciprocal is normal.
     libm::ldexp(1.0, shift.clamp(-1022, 1022))
 }
+
+#[cfg(test)]
+impl Scene<'_> {
+    /// Makes a scene of nothing but shapes.
+    pub(super) fn of_shapes(spheres: SphereLanes, cylinders: CylinderLanes) -> Self {
+        Self {
+            background: DVec3::ZERO,
+            lights: Vec::new(),
+            surfaces: &[],
+            spheres,
+            sphere_primitives: Vec::new(),
+            sphere_equations: Cow::default(),
+            cylinders,
+            cylinder_primitives: Vec::new(),
+            wall_equations: Cow::default(),
+            cap_equations: Cow::default(),
+        }
+    }
+}

@@ -251,29 +251,10 @@ fn rounded_down(number: f64) -> f32 {
 
 #[cfg(test)]
 mod tests {
-    use std::borrow::Cow;
-
-    use glam::DVec3;
-
     use super::*;
     use crate::math::DoubleDouble;
     use crate::plan::{CylinderLanes, SphereLanes};
     use crate::testing::Stream;
-
-    fn scene() -> Scene<'static> {
-        Scene {
-            background: DVec3::ZERO,
-            lights: Vec::new(),
-            surfaces: &[],
-            spheres: SphereLanes::default(),
-            sphere_primitives: Vec::new(),
-            sphere_equations: Cow::Borrowed(&[]),
-            cylinders: CylinderLanes::default(),
-            cylinder_primitives: Vec::new(),
-            wall_equations: Cow::Borrowed(&[]),
-            cap_equations: Cow::Borrowed(&[]),
-        }
-    }
 
     fn pick<T: Copy>(stream: &mut Stream, from: &[T]) -> T {
         from[stream.below(from.len())]
@@ -343,7 +324,7 @@ mod tests {
             if !is_ahead || radius < size * 1e-9 {
                 continue;
             }
-            let mut scene = scene();
+            let mut scene = Scene::of_shapes(SphereLanes::default(), CylinderLanes::default());
             scene.spheres = SphereLanes { x: vec![x], y: vec![y], z: vec![-z], radius: vec![radius] };
             let [spheres, _] = blocks_of_pixels(&scene, fov_deg, &settings);
             assert_holds(&spheres[0], &sample, "sphere");
@@ -376,7 +357,7 @@ mod tests {
                 0 => (height - size, height + slack),
                 _ => (height - slack, height + size),
             };
-            let mut scene = scene();
+            let mut scene = Scene::of_shapes(SphereLanes::default(), CylinderLanes::default());
             scene.cylinders =
                 CylinderLanes { x: vec![x], z: vec![-z], radius: vec![radius], y_min: vec![y_min], y_max: vec![y_max] };
             let [_, cylinders] = blocks_of_pixels(&scene, fov_deg, &settings);
@@ -389,7 +370,7 @@ mod tests {
         let mut stream = Stream::new(23);
         for n_objects in [0, 1, 5, 300, 20_000] {
             let mut lane = |low: f64, high: f64| (0..n_objects).map(|_| stream.between(low, high)).collect::<Vec<_>>();
-            let mut scene = scene();
+            let mut scene = Scene::of_shapes(SphereLanes::default(), CylinderLanes::default());
             let size = 0.5 / libm::sqrt(n_objects as f64 + 1.0);
             scene.spheres = SphereLanes {
                 x: lane(-1.0, 1.0),
@@ -422,7 +403,7 @@ mod tests {
 
     #[test]
     fn without_the_pass_every_tile_lists_everything() {
-        let mut scene = scene();
+        let mut scene = Scene::of_shapes(SphereLanes::default(), CylinderLanes::default());
         scene.spheres = SphereLanes { x: vec![0.0; 3], y: vec![0.0; 3], z: vec![9.0; 3], radius: vec![1.0; 3] };
         let all = Settings::default();
         let none = Settings { passes: all.passes.without(Pass::Tiles), ..all.clone() };
@@ -434,7 +415,7 @@ mod tests {
     #[test]
     fn a_crowd_around_the_eye_is_listed_once() {
         let n = 300_000;
-        let mut scene = scene();
+        let mut scene = Scene::of_shapes(SphereLanes::default(), CylinderLanes::default());
         scene.spheres = SphereLanes { x: vec![0.0; n], y: vec![0.0; n], z: vec![0.0; n], radius: vec![1.0; n] };
         let size = Size::new(20_000, 20_000).expect("a size within the limits");
         let tiles = Tiles::new(&scene, 60.0, &Settings { size, ..Settings::default() });

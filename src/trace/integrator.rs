@@ -1,8 +1,11 @@
 //! The colour of an eye ray: from hit to hit along the mirror directions, and back.
 
+use std::mem;
+
 use crate::math::{Real, Vector};
 use crate::plan::{Candidates, Object, ObjectLists, Part, Plan};
 use crate::trace::judge::{Doubt, Judge};
+use crate::trace::look_up;
 use crate::trace::ray::{Leaving, Ray};
 use crate::trace::shade::HitPoint;
 
@@ -78,9 +81,9 @@ impl<'a, 'p, R: Real> Integrator<'a, 'p, R> {
         let background = Vector::exact(self.plan.scene.background);
         if level > self.plan.settings.max_level {
             let black = Vector::exact(glam::DVec3::ZERO);
-            return Ok(End::Color(if self.meets_anything(ray, among)? { black } else { background }));
+            return Ok(End::Color(if self.searching(ray, among, Self::meets_anything)? { black } else { background }));
         }
-        let Some(hit) = self.intersect(ray, among)? else {
+        let Some(hit) = self.searching(ray, among, Self::intersect)? else {
             return Ok(End::Color(background));
         };
         let at = HitPoint::new(&self.plan.scene, ray, &hit);
@@ -90,6 +93,22 @@ impl<'a, 'p, R: Real> Integrator<'a, 'p, R> {
             return Ok(End::Color(local));
         }
         Ok(End::Mirror(Bounce { local, reflectance }, reflect(ray, &at), at.object))
+    }
+
+    /// Tests a ray against what it may meet: the candidates, or what is looked up for a reflected ray.
+    fn searching<T>(
+        &mut self,
+        ray: &Ray<R>,
+        among: Candidates<'_>,
+        test: impl FnOnce(&mut Self, &Ray<R>, Candidates<'_>) -> T,
+    ) -> T {
+        if ray.leaving.is_none() {
+            return test(self, ray, among);
+        }
+        let mut found = mem::take(&mut self.found);
+        let answer = test(self, ray, look_up::along(self.plan, ray, &mut found, among));
+        self.found = found;
+        answer
     }
 }
 

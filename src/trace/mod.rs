@@ -16,6 +16,7 @@ mod integrator;
 mod intersect;
 mod judge;
 pub mod kernels;
+mod look_up;
 mod pixel;
 mod ray;
 mod shade;

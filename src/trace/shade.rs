@@ -9,6 +9,7 @@ use crate::math::{Real, Vector};
 use crate::plan::{Light, Object, Part, Scene};
 use crate::trace::integrator::Integrator;
 use crate::trace::judge::Doubt;
+use crate::trace::look_up;
 use crate::trace::ray::{Face, Hit, Leaving, Ray};
 
 /// A hit with all that shading needs.
@@ -108,18 +109,9 @@ impl<R: Real> Integrator<'_, '_, R> {
         self.judge.counts.shadow_rays += 1;
         let leaving = Leaving { equation: at.equation, inward: at.from_inside };
         let ray = Ray { origin: at.point, dir: to_light, leaving: Some(leaving) };
-        let kernel_ray = ray.for_kernel();
         let mut found = mem::take(&mut self.found);
-        found.clear();
-        let looked_up =
-            self.plan.visit_between(light_idx, kernel_ray.dir.map(|d| -d), kernel_ray.dir_error, |object| {
-                found.push(object);
-                false
-            });
-        let among = match looked_up {
-            Some(_) => found.as_candidates(),
-            None => self.plan.occluders(at.object, light_idx),
-        };
+        let listed = self.plan.occluders(at.object, light_idx);
+        let among = look_up::before_light(self.plan, light_idx, &ray, &mut found, listed);
         let answer = self.occluded(&ray, among);
         self.found = found;
         answer

@@ -212,8 +212,6 @@ impl Face {
 
 #[cfg(test)]
 mod tests {
-    use glam::DVec3;
-
     use super::*;
     use crate::math::DoubleDouble;
     use crate::plan::{CylinderLanes, SphereLanes};
@@ -237,21 +235,6 @@ mod tests {
         }
         assert!(query([1.0, 0.5, 0.5], 1e-3).is_none() && query([0.0; 3], 0.0).is_none());
         assert!(query([f64::NAN; 3], 0.0).is_none() && query([1.0; 3], f64::INFINITY).is_none());
-    }
-
-    fn scene_of(spheres: SphereLanes, cylinders: CylinderLanes) -> Scene<'static> {
-        Scene {
-            background: DVec3::ZERO,
-            lights: Vec::new(),
-            surfaces: &[],
-            spheres,
-            sphere_primitives: Vec::new(),
-            sphere_equations: &[],
-            cylinders,
-            cylinder_primitives: Vec::new(),
-            wall_equations: &[],
-            cap_equations: &[],
-        }
     }
 
     fn finds_one(cube: &Cube, apex: [f64; 3], point: [f64; 3]) -> bool {
@@ -296,13 +279,13 @@ mod tests {
             let scene = match is_sphere {
                 true => {
                     let [x, y, z] = center.map(|c| vec![c]);
-                    scene_of(SphereLanes { x, y, z, radius: vec![radius] }, CylinderLanes::default())
+                    Scene::of_shapes(SphereLanes { x, y, z, radius: vec![radius] }, CylinderLanes::default())
                 }
                 false => {
                     let [low, high] = [[height - slack, height + size], [height - size, height + slack]][round / 2 % 2];
                     let (x, z) = (vec![center[0]], vec![center[2]]);
                     let lanes = CylinderLanes { x, z, radius: vec![radius], y_min: vec![low], y_max: vec![high] };
-                    scene_of(SphereLanes::default(), lanes)
+                    Scene::of_shapes(SphereLanes::default(), lanes)
                 }
             };
             let cube = Cube::new(&scene, apex);

@@ -219,27 +219,10 @@ fn bounds(scene: &Scene<'_>, i: usize) -> Bounds {
 
 #[cfg(test)]
 mod tests {
-    use glam::DVec3;
-
     use super::*;
     use crate::math::DoubleDouble;
     use crate::plan::{CylinderLanes, SphereLanes};
     use crate::testing::Stream;
-
-    fn scene_of(spheres: SphereLanes) -> Scene<'static> {
-        Scene {
-            background: DVec3::ZERO,
-            lights: Vec::new(),
-            surfaces: &[],
-            spheres,
-            sphere_primitives: Vec::new(),
-            sphere_equations: &[],
-            cylinders: CylinderLanes::default(),
-            cylinder_primitives: Vec::new(),
-            wall_equations: &[],
-            cap_equations: &[],
-        }
-    }
 
     /// Spheres of some sizes in some clusters.
     fn crowd(stream: &mut Stream, n: usize) -> Scene<'static> {
@@ -252,7 +235,7 @@ mod tests {
             lanes.z.push(-1.0 + spread * stream.between(-0.9, 0.9));
             lanes.radius.push(radius);
         }
-        scene_of(lanes)
+        Scene::of_shapes(lanes, CylinderLanes::default())
     }
 
     fn found(forest: &Forest, ray: &SearchRay) -> Vec<Object> {
