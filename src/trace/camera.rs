@@ -18,6 +18,11 @@ impl<R: Real> Camera<R> {
         Self { step: R::rounded(k, relative_error) / R::exact(f64::from(steps_per_half_height)) }
     }
 
+    /// Returns the share of the view's half height that one step of a sample's place makes, at z = −1.
+    pub fn step(&self) -> R {
+        self.step
+    }
+
     /// Returns the ray through a place `(x, y)`, counted in steps from the middle of the image, right and up.
     pub fn eye_ray(&self, x: i64, y: i64) -> Ray<R> {
         // At most 65535 · 2 · 256 steps: exact.

@@ -13,6 +13,8 @@ pub struct Counts {
     pub shadow_rays: u64,
     /// Tests of one ray against one primitive.
     pub tests: u64,
+    /// Pixels that packets left to be settled one by one.
+    pub settled_pixels: u64,
     /// Pixels that binary64 could not decide and double-double did.
     pub refined_pixels: u64,
     /// Decisions that double-double could not make either, made by the rule for ties.
@@ -25,6 +27,7 @@ impl AddAssign for Counts {
         self.reflected_rays += other.reflected_rays;
         self.shadow_rays += other.shadow_rays;
         self.tests += other.tests;
+        self.settled_pixels += other.settled_pixels;
         self.refined_pixels += other.refined_pixels;
         self.ties += other.ties;
     }

@@ -15,7 +15,7 @@ pub struct Integrator<'a, 'p, R> {
     pub(super) plan: &'a Plan<'p>,
     /// Decides comparisons and counts.
     pub judge: Judge,
-    /// The primitives that the kernels kept for the ray at hand.
+    /// The primitives that were not rejected for the ray at hand.
     pub(super) kept: Vec<u32>,
     /// What was looked up for the ray at hand.
     pub(super) found: ObjectLists,

@@ -16,8 +16,8 @@ use crate::math::{Real, Vector};
 use crate::plan::{Candidates, Scene};
 use crate::trace::integrator::Integrator;
 use crate::trace::judge::{Doubt, Judge};
-use crate::trace::kernels::scalar;
 use crate::trace::ray::{Face, Hit, Leaving, Ray};
+use crate::trace::reject;
 
 /// A meeting with a sphere or with the infinite wall of a cylinder.
 #[derive(Clone, Copy)]
@@ -93,14 +93,14 @@ impl<R: Real> Integrator<'_, '_, R> {
         mut visit: impl FnMut(&mut Judge, Hit<R>, u32) -> Result<bool, Doubt>,
     ) -> Result<bool, Doubt> {
         let scene = &self.plan.scene;
-        let kernel_ray = ray.for_kernel();
+        let plain_ray = ray.plain();
         let mut doubt = None;
         self.judge.counts.tests += among.len() as u64;
 
         self.kept.clear();
-        scalar::keep_spheres(&kernel_ray, &scene.spheres, among.spheres, &mut self.kept);
+        reject::keep_spheres(&plain_ray, &scene.spheres, among.spheres, &mut self.kept);
         let n_spheres = self.kept.len();
-        scalar::keep_cylinders(&kernel_ray, &scene.cylinders, among.cylinders, &mut self.kept);
+        reject::keep_cylinders(&plain_ray, &scene.cylinders, among.cylinders, &mut self.kept);
 
         for (k, &i) in self.kept.iter().enumerate() {
             let (hit, primitive) = if k < n_spheres {

@@ -2,8 +2,8 @@
 
 use crate::math::Real;
 use crate::plan::{Candidates, Object, ObjectLists, Plan, Scene, SearchRay};
-use crate::trace::kernels::KernelRay;
 use crate::trace::ray::Ray;
+use crate::trace::reject::PlainRay;
 
 /// Half an ulp of 1.
 const ROUNDOFF: f64 = f64::EPSILON / 2.0;
@@ -18,8 +18,8 @@ pub fn along<'a, R: Real>(
     found: &'a mut ObjectLists,
     unless_found: Candidates<'a>,
 ) -> Candidates<'a> {
-    let kernel_ray = ray.for_kernel();
-    let KernelRay { origin, dir, origin_error, dir_error, .. } = kernel_ray;
+    let plain_ray = ray.plain();
+    let PlainRay { origin, dir, origin_error, dir_error, .. } = plain_ray;
     found.clear();
     let leaving = ray.leaving.map(|leaving| leaving.equation);
     let mut matters = f64::INFINITY;
@@ -29,7 +29,7 @@ pub fn along<'a, R: Real>(
         if let Object::Sphere(i) = object
             && leaving != Some(plan.scene.sphere_equations[i as usize])
         {
-            matters = matters.min(met_before(&kernel_ray, &plan.scene, i as usize));
+            matters = matters.min(met_before(&plain_ray, &plan.scene, i as usize));
         }
         matters
     });
@@ -49,7 +49,7 @@ pub fn before_light<'a, R: Real>(
     found: &'a mut ObjectLists,
     unless_found: Candidates<'a>,
 ) -> Candidates<'a> {
-    let KernelRay { dir, dir_error, .. } = ray.for_kernel();
+    let PlainRay { dir, dir_error, .. } = ray.plain();
     found.clear();
     let looked_up = plan.visit_between(light_idx, dir.map(|d| -d), dir_error, |object| {
         found.push(object);
@@ -65,8 +65,8 @@ pub fn before_light<'a, R: Real>(
 ///
 /// With m, b, a as in `intersect`, the line meets the sphere when |m × d|² < a·r², and no meeting is behind
 /// (b + r·√a)/a. When b > 0 the last one is ahead. Each component of m × d is off by at most twice the slack δ of
-/// `kernels`, b by three times.
-fn met_before(ray: &KernelRay, scene: &Scene<'_>, i: usize) -> f64 {
+/// `reject`, b by three times.
+fn met_before(ray: &PlainRay, scene: &Scene<'_>, i: usize) -> f64 {
     let (spheres, d) = (&scene.spheres, ray.dir);
     let m = [spheres.x[i] - ray.origin[0], spheres.y[i] - ray.origin[1], spheres.z[i] - ray.origin[2]];
     let sum = |v: [f64; 3]| v[0].abs() + v[1].abs() + v[2].abs();

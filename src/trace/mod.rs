@@ -1,12 +1,13 @@
 //! The ray tracer: a [`Plan`] in, rows of pixels out, each the pixel that exact arithmetic gives.
 //!
-//! A pixel is traced in binary64 with a running bound on every number ([`Ball64`]). If each comparison on its way and the
+//! Most pixels are traced by `wide`, many at once in plain binary64, where everything is decided beyond bounds that are
+//! known beforehand. Every other pixel is traced in binary64 with a running bound on every number ([`Ball64`]). If each comparison on its way and the
 //! rounding of its channels are decided by the bounds, it is proved. If not, it is traced again in double-double
 //! ([`Ball106`]); what that cannot decide either is a tie, counted and drawn as equality asks. The code is the same for
 //! both, generic over [`Real`](crate::math::Real).
 //!
-//! Reading order: [`Tracer::render_rows`], `pixel`, `integrator`, `intersect`, `shade`. `kernels` reject
-//! primitives cheaply.
+//! Reading order: [`Tracer::render_rows`], `pixel`, `integrator`, `intersect`, `shade`. `reject` keeps most
+//! primitives away from them.
 //!
 //! Never here: files, encoding, progress (see `exec`); an epsilon.
 
@@ -19,7 +20,9 @@ pub mod kernels;
 mod look_up;
 mod pixel;
 mod ray;
+mod reject;
 mod shade;
+mod wide;
 
 pub use counts::Counts;
 
@@ -31,7 +34,9 @@ use crate::math::{Ball64, Ball106};
 use crate::plan::{Plan, Settings};
 use crate::trace::camera::Camera;
 use crate::trace::integrator::Integrator;
+use crate::trace::kernels::Backend;
 use crate::trace::pixel::Sampling;
+use crate::trace::wide::Wide;
 
 /// Renders one image, rows at a time.
 #[derive(Debug)]
@@ -40,6 +45,7 @@ pub struct Tracer<'p> {
     sampling: Sampling,
     camera: Camera<Ball64>,
     fine_camera: Camera<Ball106>,
+    wide: Option<Wide>,
 }
 
 impl<'p> Tracer<'p> {
@@ -53,10 +59,21 @@ impl<'p> Tracer<'p> {
     /// [`Settings::MAX_LEVEL`].
     #[must_use]
     pub fn new(plan: Plan<'p>) -> Self {
+        Self::with_backend(plan, Some(Backend::best()))
+    }
+
+    /// Prepares to render by the packets of one backend, or none of them: no pixel depends on it.
+    ///
+    /// # Panics
+    /// As [`Tracer::new`], and when this machine has no such backend.
+    #[must_use]
+    pub fn with_backend(plan: Plan<'p>, backend: Option<Backend>) -> Self {
         assert!(plan.settings.max_level <= Settings::MAX_LEVEL, "at most {} levels", Settings::MAX_LEVEL);
         let sampling = Sampling::new(&plan.settings);
+        let camera: Camera<Ball64> = Camera::new(plan.fov_deg, sampling.steps_per_half_height());
         Self {
-            camera: Camera::new(plan.fov_deg, sampling.steps_per_half_height()),
+            wide: backend.and_then(|backend| Wide::new(&plan, camera.step(), backend)),
+            camera,
             fine_camera: Camera::new(plan.fov_deg, sampling.steps_per_half_height()),
             sampling,
             plan,
@@ -73,7 +90,8 @@ impl<'p> Tracer<'p> {
         self.render_rows_unless(rows, rgb, &|| false)
     }
 
-    /// Does the work of [`Tracer::render_rows`] until `is_cancelled`, which is asked before each pixel, says so; what is
+    /// Does the work of [`Tracer::render_rows`] until `is_cancelled`, which is asked before each tile and each pixel that a tile
+    /// leaves open, says so; what is
     /// then in `rgb` is no image.
     ///
     /// # Panics
@@ -85,13 +103,21 @@ impl<'p> Tracer<'p> {
         is_cancelled: &(dyn Fn() -> bool + Sync),
     ) -> Counts {
         let row_bytes = self.assert_fits(&rows, rgb);
-        (rows.into_par_iter())
-            .zip(rgb.par_chunks_mut(row_bytes))
-            .map(|(row, rgb)| self.render_row(row, rgb, is_cancelled))
-            .reduce(Counts::default, |mut total, counts| {
-                total += counts;
-                total
-            })
+        // The first band ends where the tiles do.
+        let n_first = (Self::TILE_ROWS - rows.start % Self::TILE_ROWS).min(rows.len() as u32);
+        let (first, rest) = rgb.split_at_mut(n_first as usize * row_bytes);
+        let middle = rows.start + n_first;
+        let rest_bands = rest.par_chunks_mut(Self::TILE_ROWS as usize * row_bytes).enumerate().map(|(band, rgb)| {
+            let start = middle + band as u32 * Self::TILE_ROWS;
+            self.render_band(start..rows.end.min(start + Self::TILE_ROWS), rgb, is_cancelled)
+        });
+        let first_band = || self.render_band(rows.start..middle, first, is_cancelled);
+        let sum = |mut total: Counts, counts: Counts| {
+            total += counts;
+            total
+        };
+        let (first, rest) = rayon::join(first_band, || rest_bands.reduce(Counts::default, sum));
+        sum(first, rest)
     }
 
     /// Does the work of [`Tracer::render_rows_unless`] on the calling thread alone.
@@ -99,11 +125,29 @@ impl<'p> Tracer<'p> {
     /// # Panics
     /// As [`Tracer::render_rows`].
     pub fn render_band(&self, rows: Range<u32>, rgb: &mut [u8], is_cancelled: &(dyn Fn() -> bool + Sync)) -> Counts {
-        let row_bytes = self.assert_fits(&rows, rgb);
-        let mut counts = Counts::default();
-        for (row, rgb) in rows.zip(rgb.chunks_exact_mut(row_bytes)) {
-            counts += self.render_row(row, rgb, is_cancelled);
+        self.assert_fits(&rows, rgb);
+        let mut settler = Settler::new(self);
+        let Some(wide) = &self.wide else {
+            settler.settle_all(rows, rgb, is_cancelled);
+            return settler.counts();
+        };
+        let width = self.plan.settings.size.width() as usize;
+        let mut scratch = wide.scratch();
+        for rect in Wide::tiles(&self.plan, rows.clone()) {
+            if is_cancelled() {
+                break;
+            }
+            wide.trace(&self.plan, &self.sampling, &rect, &mut scratch);
+            scratch.write(&rect, rgb, width, rows.start);
+            scratch.for_slow(&rect, |column, row| {
+                if !is_cancelled() {
+                    let first = ((row - rows.start) as usize * width + column as usize) * 3;
+                    rgb[first..first + 3].copy_from_slice(&settler.settle(column, row));
+                }
+            });
         }
+        let mut counts = settler.counts();
+        counts += scratch.counts;
         counts
     }
 
@@ -121,25 +165,50 @@ impl<'p> Tracer<'p> {
         assert_eq!(rgb.len(), rows.len() * row_bytes);
         row_bytes
     }
+}
 
-    fn render_row(&self, row: u32, rgb: &mut [u8], is_cancelled: &dyn Fn() -> bool) -> Counts {
-        let mut coarse = Integrator::new(&self.plan);
-        let mut fine = Integrator::new(&self.plan);
-        for (column, rgb) in (0..).zip(rgb.chunks_exact_mut(3)) {
-            if is_cancelled() {
-                break;
+/// Settles pixels one by one, in as fine an arithmetic as each needs.
+struct Settler<'a, 'p> {
+    tracer: &'a Tracer<'p>,
+    coarse: Integrator<'a, 'p, Ball64>,
+    fine: Integrator<'a, 'p, Ball106>,
+}
+
+impl<'a, 'p> Settler<'a, 'p> {
+    fn new(tracer: &'a Tracer<'p>) -> Self {
+        Self { tracer, coarse: Integrator::new(&tracer.plan), fine: Integrator::new(&tracer.plan) }
+    }
+
+    /// Returns the bytes of a pixel.
+    fn settle(&mut self, column: u32, row: u32) -> [u8; 3] {
+        let tracer = self.tracer;
+        self.coarse.judge.counts.settled_pixels += 1;
+        let pixel = tracer.sampling.pixel(column, row);
+        let among = tracer.plan.tiles.candidates(column, row);
+        pixel::settle(&mut self.coarse, &tracer.camera, &pixel, among).unwrap_or_else(|_| {
+            self.fine.judge.counts.refined_pixels += 1;
+            pixel::settle(&mut self.fine, &tracer.fine_camera, &pixel, among)
+                .expect("the finest arithmetic decides ties by rule")
+        })
+    }
+
+    /// Settles all pixels of these rows.
+    fn settle_all(&mut self, rows: Range<u32>, rgb: &mut [u8], is_cancelled: &dyn Fn() -> bool) {
+        let row_bytes = self.tracer.plan.settings.size.width() as usize * 3;
+        for (row, rgb) in rows.zip(rgb.chunks_exact_mut(row_bytes)) {
+            for (column, rgb) in (0..).zip(rgb.chunks_exact_mut(3)) {
+                if is_cancelled() {
+                    return;
+                }
+                rgb.copy_from_slice(&self.settle(column, row));
             }
-            let pixel = self.sampling.pixel(column, row);
-            let among = self.plan.tiles.candidates(column, row);
-            let settled = pixel::settle(&mut coarse, &self.camera, &pixel, among).unwrap_or_else(|_| {
-                fine.judge.counts.refined_pixels += 1;
-                pixel::settle(&mut fine, &self.fine_camera, &pixel, among)
-                    .expect("the finest arithmetic decides ties by rule")
-            });
-            rgb.copy_from_slice(&settled);
         }
-        let mut counts = coarse.judge.counts;
-        counts += fine.judge.counts;
+    }
+
+    /// Returns what has been done so far.
+    fn counts(&self) -> Counts {
+        let mut counts = self.coarse.judge.counts;
+        counts += self.fine.judge.counts;
         counts
     }
 }

@@ -46,6 +46,13 @@ impl Sampling {
         self.samples * self.height
     }
 
+    /// Returns the place of a pixel's first sample, in steps from the middle of the image, right and up. The samples of a
+    /// row of pixels lie 2 steps apart.
+    pub fn first_sample(&self, column: u32, row: u32) -> (i64, i64) {
+        let Pixel { left, top, .. } = self.pixel(column, row);
+        (left, top)
+    }
+
     /// Returns the samples of the pixel in this column and row.
     ///
     /// Sample k of N lies (k + ½)/N − ½ pixel from the anchor, which is 2k + 1 − N steps.

@@ -3,7 +3,7 @@
 use crate::ir::EquationId;
 use crate::math::{Real, Vector};
 use crate::plan::Object;
-use crate::trace::kernels::KernelRay;
+use crate::trace::reject::PlainRay;
 
 /// A half-line: the points origin + t·dir with t > 0.
 #[derive(Clone, Copy, Debug)]
@@ -26,8 +26,8 @@ pub struct Leaving {
 }
 
 impl<R: Real> Ray<R> {
-    /// Returns the ray as the kernels see it.
-    pub fn for_kernel(&self) -> KernelRay {
+    /// Returns the ray in plain binary64.
+    pub fn plain(&self) -> PlainRay {
         let largest_error = |v: Vector<R>| v.x.error().max(v.y.error()).max(v.z.error());
         let middle = |v: Vector<R>| v.to_array().map(R::value);
         // The middle of a double-double is rounded once more to binary64.
@@ -36,7 +36,7 @@ impl<R: Real> Ray<R> {
             if R::IS_FINEST { largest * f64::EPSILON } else { 0.0 }
         };
         let y_rounding = if R::IS_FINEST { self.origin.y.value().abs() * f64::EPSILON } else { 0.0 };
-        KernelRay {
+        PlainRay {
             origin: middle(self.origin),
             dir: middle(self.dir),
             origin_error: largest_error(self.origin) + rounding(self.origin),

@@ -1,28 +1,188 @@
-//! The hot loops: which primitives a ray may meet at all.
+//! The lanes: eight binary64 numbers that go through the same operations at once, on whatever the machine has for it.
 //!
-//! A kernel works in plain binary64 and may only *reject*: a primitive that it rejects is not met, by a bound on its own
-//! rounding and on what the ray is off. What it keeps is tested again with bounds by `intersect`. Later backends answer
-//! with the same bits as [`scalar`].
+//! [`Lanes`] has the operations of IEEE 754 alone, each rounded once: no fused multiply-add, no approximate reciprocal. A
+//! computation written over it therefore gives the same bits on every backend; [`scalar`] is the specification. A
+//! computation is a [`Job`]; [`Backend::run`] instantiates it for the lanes of a backend, inside a function that may use
+//! the instructions of that backend.
+//!
+//! The only `unsafe` of the library is in here: calls of instructions, and of the functions that contain them.
+#![allow(unsafe_code, reason = "instructions that not every machine has")]
 
-pub mod scalar;
+mod scalar;
 
-/// Half an ulp of 1.
-const ROUNDOFF: f64 = f64::EPSILON / 2.0;
+#[cfg(target_arch = "x86_64")]
+mod avx2;
+#[cfg(target_arch = "x86_64")]
+mod avx512;
 
-/// More than underflow can take away: 2⁻⁹⁶⁰.
-const UNDERFLOW: f64 = f64::from_bits((1023 - 960) << 52);
+#[cfg(test)]
+mod tests;
 
-/// A ray in plain binary64, and how far it is off.
-#[derive(Clone, Copy, Debug)]
-pub struct KernelRay {
-    /// Where it starts.
-    pub origin: [f64; 3],
-    /// Where it goes; need not be of unit length.
-    pub dir: [f64; 3],
-    /// A bound on the error of each coordinate of the origin.
-    pub origin_error: f64,
-    /// A bound on the error of the height of the origin, which is exact on a cap.
-    pub origin_y_error: f64,
-    /// A bound on the error of each coordinate of the direction.
-    pub dir_error: f64,
+use std::fmt::Debug;
+use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
+
+/// One truth for each lane.
+pub trait Mask: Copy + Debug + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
+    /// Makes a mask from its bits, that of lane 0 lowest; those above the last lane do not matter.
+    fn from_bits(bits: u32) -> Self;
+
+    /// Returns the bits, that of lane 0 lowest; those above the last lane are 0.
+    fn bits(self) -> u32;
+
+    /// Tells whether any lane is true.
+    #[inline(always)]
+    fn any(self) -> bool {
+        self.bits() != 0
+    }
+}
+
+/// Some numbers side by side. Every operation is carried out lane by lane and rounded once, to the nearest, as IEEE 754
+/// says.
+pub trait Lanes:
+    Copy + Debug + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
+{
+    /// How many.
+    const N: usize;
+
+    /// What comparisons give.
+    type Mask: Mask;
+
+    /// Makes every lane the same number.
+    fn splat(number: f64) -> Self;
+
+    /// Reads the first `N` numbers.
+    ///
+    /// # Panics
+    /// When there are fewer.
+    fn load(from: &[f64]) -> Self;
+
+    /// Writes the first `N` numbers.
+    ///
+    /// # Panics
+    /// When there is room for fewer.
+    fn store(self, to: &mut [f64]);
+
+    /// Writes the lanes of the mask side by side, and anything into the rest of the first `N` places.
+    ///
+    /// # Panics
+    /// When there is room for fewer than `N`.
+    fn store_packed(self, mask: Self::Mask, to: &mut [f64]);
+
+    /// Writes the lanes of the mask, which must be whole numbers from 0 to 2³¹ − 1, each into its place of the first `N`.
+    ///
+    /// # Panics
+    /// When there is room for fewer than `N`.
+    fn store_whole(self, mask: Self::Mask, to: &mut [u32]);
+
+    /// Returns the correctly rounded square root.
+    fn sqrt(self) -> Self;
+
+    /// Returns the largest whole number that is not larger.
+    fn floor(self) -> Self;
+
+    /// Returns the magnitude.
+    fn abs(self) -> Self;
+
+    /// Returns `self` where it is smaller than `other`, else `other`.
+    fn min(self, other: Self) -> Self;
+
+    /// Returns `self` where it is larger than `other`, else `other`.
+    fn max(self, other: Self) -> Self;
+
+    /// Compares; false where a number is NaN.
+    fn lt(self, other: Self) -> Self::Mask;
+
+    /// Compares; false where a number is NaN.
+    fn le(self, other: Self) -> Self::Mask;
+
+    /// Compares; false where a number is NaN.
+    fn eq(self, other: Self) -> Self::Mask;
+
+    /// Returns `yes` where the mask is true, else `no`.
+    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
+
+    /// Compares; false where a number is NaN.
+    #[inline(always)]
+    fn gt(self, other: Self) -> Self::Mask {
+        other.lt(self)
+    }
+
+    /// Compares; false where a number is NaN.
+    #[inline(always)]
+    fn ge(self, other: Self) -> Self::Mask {
+        other.le(self)
+    }
+}
+
+/// A computation over lanes of whatever kind. To be compiled for a backend it must be inlined into it, so
+/// [`run`](Job::run), and all that it calls on lanes, is `#[inline(always)]`.
+pub trait Job {
+    /// What comes out.
+    type Output;
+
+    /// Computes it.
+    fn run<L: Lanes>(self) -> Self::Output;
+}
+
+/// What the lanes are made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Backend {
+    /// One number after the other, on any machine.
+    Scalar,
+    /// Registers of four.
+    Avx2,
+    /// Registers of eight.
+    Avx512,
+}
+
+impl Backend {
+    /// Every backend, the slowest first.
+    pub const ALL: [Self; 3] = [Self::Scalar, Self::Avx2, Self::Avx512];
+
+    /// Returns the fastest that this machine has.
+    #[must_use]
+    pub fn best() -> Self {
+        Self::ALL.into_iter().rfind(|backend| backend.is_available()).unwrap_or(Self::Scalar)
+    }
+
+    /// Returns the name by which a command line calls it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Scalar => "scalar",
+            Self::Avx2 => "avx2",
+            Self::Avx512 => "avx512",
+        }
+    }
+
+    /// Tells whether this machine has the instructions.
+    #[must_use]
+    pub fn is_available(self) -> bool {
+        match self {
+            Self::Scalar => true,
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2 => avx2::is_available(),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512 => avx512::is_available(),
+            #[cfg(not(target_arch = "x86_64"))]
+            Self::Avx2 | Self::Avx512 => false,
+        }
+    }
+
+    /// Carries out a job.
+    ///
+    /// # Panics
+    /// When the machine lacks the instructions.
+    pub fn run<J: Job>(self, job: J) -> J::Output {
+        assert!(self.is_available(), "this machine has no {}", self.name());
+        match self {
+            // SAFETY: the machine has the instructions, as was just asserted.
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2 => unsafe { avx2::run(job) },
+            // SAFETY: the machine has the instructions, as was just asserted.
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512 => unsafe { avx512::run(job) },
+            _ => job.run::<scalar::Lanes8>(),
+        }
+    }
 }

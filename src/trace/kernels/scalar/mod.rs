@@ -1,159 +1,212 @@
-//! The specification of the kernels: one primitive at a time, in the shape of the formulas.
-//!
-//! # Method
-//! Let m = c − o lead from the origin to the centre, d be the direction. The line passes the centre at the distance
-//! |m × d| / |d|, so it misses when |m × d|² > |d|²·r². The ray leads away from an outside point when m·d < 0 and
-//! |m|² > r². Each difference below holds with the slack that rounding and the errors of the ray can make up:
-//! with M = |m|₁, N = |d|₁ and u = 2⁻⁵³, each product of a component of m and one of d is off by at most
-//! δ = 4u·M·N + N·(origin error) + M·(direction error) + 2·(origin error)·(direction error) together with the subtraction
-//! or additions that follow it.
+//! Lanes of plain numbers: the specification of the other backends.
 
-mod cylinder;
-mod sphere;
+use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-pub use cylinder::keep_cylinders;
-pub use sphere::keep_spheres;
+use crate::trace::kernels::{Lanes, Mask};
 
-use crate::trace::kernels::{KernelRay, ROUNDOFF, UNDERFLOW};
+/// Eight numbers.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Lanes8([f64; 8]);
 
-/// What rejection has to know of the line through two or three of its coordinates.
-struct Offsets {
-    /// m, from the origin to the centre.
-    to_center: f64,
-    /// δ of the module's documentation.
-    slack: f64,
-}
+/// Eight truths, a bit each.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Mask8(u8);
 
-impl Offsets {
-    /// Makes them from M = |m|₁ and N = |d|₁.
-    fn new(ray: &KernelRay, to_center: f64, dir: f64) -> Self {
-        let slack = 6.0 * ROUNDOFF * to_center * dir
-            + dir * ray.origin_error
-            + to_center * ray.dir_error
-            + 2.0 * ray.origin_error * ray.dir_error
-            + UNDERFLOW;
-        Self { to_center, slack }
+impl Lanes8 {
+    #[inline(always)]
+    fn map(mut self, f: impl Fn(f64) -> f64) -> Self {
+        for lane in &mut self.0 {
+            *lane = f(*lane);
+        }
+        self
+    }
+
+    #[inline(always)]
+    fn zip(mut self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
+        for (lane, other) in self.0.iter_mut().zip(other.0) {
+            *lane = f(*lane, other);
+        }
+        self
+    }
+
+    #[inline(always)]
+    fn compare(self, other: Self, f: impl Fn(f64, f64) -> bool) -> Mask8 {
+        let mut bits = 0;
+        for i in 0..8 {
+            bits |= u8::from(f(self.0[i], other.0[i])) << i;
+        }
+        Mask8(bits)
     }
 }
 
-/// Tells whether the line misses: |m × d|² > |d|²·r² beyond doubt.
-///
-/// `cross_squared`, `cross_sum`: squared length and sum of magnitudes of m × d, each component off by at most twice
-/// the slack. `dir_squared`: |d|², `dir`: |d|₁.
-fn line_misses(
-    ray: &KernelRay,
-    offsets: &Offsets,
-    cross_squared: f64,
-    cross_sum: f64,
-    dir_squared: f64,
-    dir: f64,
-    radius: f64,
-) -> bool {
-    let radius_squared = radius * radius;
-    let dir_slack = 16.0 * ROUNDOFF * dir_squared + 4.0 * (dir + ray.dir_error) * ray.dir_error;
-    let slack =
-        8.0 * offsets.slack * cross_sum + 16.0 * ROUNDOFF * cross_squared + dir_slack * radius_squared + UNDERFLOW;
-    cross_squared > dir_squared * radius_squared * (1.0 + 8.0 * ROUNDOFF) + slack * (1.0 + 16.0 * ROUNDOFF)
+impl Add for Lanes8 {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        self.zip(other, |a, b| a + b)
+    }
 }
 
-/// Tells whether the ray leads away from the outside: m·d < 0 and |m|² > r² beyond doubt.
-///
-/// `along`: m·d, off by at most three times the slack. `distance_squared`: |m|².
-fn leads_away(ray: &KernelRay, offsets: &Offsets, along: f64, distance_squared: f64, radius: f64) -> bool {
-    let distance_slack = 16.0 * ROUNDOFF * (distance_squared + radius * radius)
-        + 4.0 * (offsets.to_center + ray.origin_error) * ray.origin_error
-        + UNDERFLOW;
-    along < -4.0 * offsets.slack && distance_squared > radius * radius + distance_slack
+impl Sub for Lanes8 {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        self.zip(other, |a, b| a - b)
+    }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::plan::{CylinderLanes, SphereLanes};
-    use crate::testing::Stream;
+impl Mul for Lanes8 {
+    type Output = Self;
 
-    fn vector(stream: &mut Stream) -> [f64; 3] {
-        [(); 3].map(|()| stream.between(-1.0, 1.0))
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        self.zip(other, |a, b| a * b)
+    }
+}
+
+impl Div for Lanes8 {
+    type Output = Self;
+
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        self.zip(other, |a, b| a / b)
+    }
+}
+
+impl Neg for Lanes8 {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        self.map(|a| -a)
+    }
+}
+
+impl Lanes for Lanes8 {
+    const N: usize = 8;
+
+    type Mask = Mask8;
+
+    #[inline(always)]
+    fn splat(number: f64) -> Self {
+        Self([number; 8])
     }
 
-    fn length(v: [f64; 3]) -> f64 {
-        v.into_iter().map(|c| c * c).sum::<f64>().sqrt()
+    #[inline(always)]
+    fn load(from: &[f64]) -> Self {
+        Self(std::array::from_fn(|i| from[..8][i]))
     }
 
-    fn ray(origin: [f64; 3], dir: [f64; 3], error: f64) -> KernelRay {
-        KernelRay { origin, dir, origin_error: error, origin_y_error: error, dir_error: error }
+    #[inline(always)]
+    fn store(self, to: &mut [f64]) {
+        to[..8].copy_from_slice(&self.0);
     }
 
-    /// A ray that grazes a sphere: from `origin` past `center` at `share` of the radius, with all of it known to `error`.
-    fn grazing_ray(stream: &mut Stream, center: [f64; 3], radius: f64, share: f64, error: f64) -> KernelRay {
-        let aside = vector(stream);
-        let along = vector(stream);
-        // The part of `aside` across `along`, as long as the radius.
-        let dot: f64 = (0..3).map(|k| aside[k] * along[k]).sum::<f64>() / (length(along) * length(along));
-        let across: [f64; 3] = std::array::from_fn(|k| aside[k] - dot * along[k]);
-        let factor = share * radius / length(across);
-        let far = 1.0 + 50.0 * stream.unit();
-        let origin = std::array::from_fn(|k| center[k] + across[k] * factor - along[k] * far * radius);
-        ray(origin, along, error)
-    }
-
-    /// A hit that rounding hides must not be rejected: rays aimed a few roundings inside of the silhouette, at spheres of
-    /// all sizes far from the origin of coordinates, are kept.
-    #[test]
-    fn grazing_hits_are_kept() {
-        let mut stream = Stream::new(3);
-        for _ in 0..200_000 {
-            let radius = libm::exp2(stream.between(-30.0, 30.0));
-            let center = vector(&mut stream).map(|c| c * 100.0 * radius);
-            // The ray is off by the roundings of its making, at most this.
-            let error = 200.0 * radius * 8.0 * f64::EPSILON;
-            let ray = grazing_ray(&mut stream, center, radius, 1.0, error);
-            let [x, y, z] = center.map(|c| vec![c]);
-            let mut kept = Vec::new();
-            keep_spheres(&ray, &SphereLanes { x, y, z, radius: vec![radius] }, &[0], &mut kept);
-            assert_eq!(kept, [0], "{ray:?} {center:?} {radius}");
+    #[inline(always)]
+    fn store_packed(self, mask: Mask8, to: &mut [f64]) {
+        let to = &mut to[..8];
+        let mut n = 0;
+        for (i, lane) in self.0.into_iter().enumerate() {
+            if mask.0 >> i & 1 != 0 {
+                to[n] = lane;
+                n += 1;
+            }
         }
     }
 
-    #[test]
-    fn clear_misses_are_rejected() {
-        let mut stream = Stream::new(5);
-        for _ in 0..10_000 {
-            let center = vector(&mut stream).map(|c| c * 100.0);
-            let ray = grazing_ray(&mut stream, center, 1.0, 1.0 + 1e-9, 1e-15);
-            let [x, y, z] = center.map(|c| vec![c]);
-            let mut kept = Vec::new();
-            keep_spheres(&ray, &SphereLanes { x, y, z, radius: vec![1.0] }, &[0], &mut kept);
-            assert!(kept.is_empty(), "{ray:?} {center:?}");
+    #[inline(always)]
+    fn store_whole(self, mask: Mask8, to: &mut [u32]) {
+        let to = &mut to[..8];
+        for (i, lane) in self.0.into_iter().enumerate() {
+            if mask.0 >> i & 1 != 0 {
+                to[i] = lane as u32;
+            }
         }
     }
 
-    #[test]
-    fn what_lies_behind_is_rejected_and_what_surrounds_is_kept() {
-        let toward_minus_z = ray([0.0; 3], [0.1, 0.0, -1.0], 0.0);
-        let spheres = SphereLanes { x: vec![0.0; 2], y: vec![0.0; 2], z: vec![3.0, 3.0], radius: vec![1.0, 4.0] };
-        let mut kept = Vec::new();
-        keep_spheres(&toward_minus_z, &spheres, &[0, 1], &mut kept);
-        assert_eq!(kept, [1]);
-
-        let cylinders = CylinderLanes {
-            x: vec![0.0; 4],
-            z: vec![3.0, 3.0, -3.0, -3.0],
-            radius: vec![1.0, 4.0, 1.0, 1.0],
-            y_min: vec![-1.0, -1.0, -1.0, 0.5],
-            y_max: vec![1.0, 1.0, 1.0, 1.0],
-        };
-        kept.clear();
-        keep_cylinders(&ray([0.0; 3], [0.1, -0.1, -1.0], 0.0), &cylinders, &[0, 1, 2, 3], &mut kept);
-        assert_eq!(kept, [1, 2], "behind; around; ahead; ahead but above a ray that falls");
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        self.map(f64::sqrt)
     }
 
-    #[test]
-    fn a_ray_in_the_plane_of_a_cap_keeps_its_cylinder() {
-        let cylinders =
-            CylinderLanes { x: vec![0.0], z: vec![-3.0], radius: vec![1.0], y_min: vec![-1.0], y_max: vec![0.0] };
-        let mut kept = Vec::new();
-        keep_cylinders(&ray([0.0; 3], [0.0, 0.0, -1.0], 0.0), &cylinders, &[0], &mut kept);
-        assert_eq!(kept, [0]);
+    #[inline(always)]
+    fn floor(self) -> Self {
+        self.map(f64::floor)
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        self.map(f64::abs)
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        self.zip(other, |a, b| if a < b { a } else { b })
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        self.zip(other, |a, b| if a > b { a } else { b })
+    }
+
+    #[inline(always)]
+    fn lt(self, other: Self) -> Mask8 {
+        self.compare(other, |a, b| a < b)
+    }
+
+    #[inline(always)]
+    fn le(self, other: Self) -> Mask8 {
+        self.compare(other, |a, b| a <= b)
+    }
+
+    #[inline(always)]
+    fn eq(self, other: Self) -> Mask8 {
+        self.compare(other, |a, b| a == b)
+    }
+
+    #[inline(always)]
+    fn select(mask: Mask8, yes: Self, no: Self) -> Self {
+        Self(std::array::from_fn(|i| if mask.0 >> i & 1 != 0 { yes.0[i] } else { no.0[i] }))
+    }
+}
+
+impl Mask for Mask8 {
+    #[inline(always)]
+    fn from_bits(bits: u32) -> Self {
+        Self(bits as u8)
+    }
+
+    #[inline(always)]
+    fn bits(self) -> u32 {
+        self.0.into()
+    }
+}
+
+impl BitAnd for Mask8 {
+    type Output = Self;
+
+    #[inline(always)]
+    fn bitand(self, other: Self) -> Self {
+        Self(self.0 & other.0)
+    }
+}
+
+impl BitOr for Mask8 {
+    type Output = Self;
+
+    #[inline(always)]
+    fn bitor(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+}
+
+impl Not for Mask8 {
+    type Output = Self;
+
+    #[inline(always)]
+    fn not(self) -> Self {
+        Self(!self.0)
     }
 }

@@ -1,11 +1,10 @@
 //! Rejects spheres.
 
 use crate::plan::SphereLanes;
-use crate::trace::kernels::KernelRay;
-use crate::trace::kernels::scalar::{Offsets, leads_away, line_misses};
+use crate::trace::reject::{Offsets, PlainRay, leads_away, line_misses};
 
 /// Appends to `kept` those of the spheres `among` that the ray may meet, in order.
-pub fn keep_spheres(ray: &KernelRay, spheres: &SphereLanes, among: &[u32], kept: &mut Vec<u32>) {
+pub fn keep_spheres(ray: &PlainRay, spheres: &SphereLanes, among: &[u32], kept: &mut Vec<u32>) {
     let n_spheres = spheres.radius.len();
     let (xs, ys, zs, radii) =
         (&spheres.x[..n_spheres], &spheres.y[..n_spheres], &spheres.z[..n_spheres], &spheres.radius);

@@ -1,11 +1,10 @@
 //! Rejects cylinders: a line that misses the infinite wall misses the caps too.
 
 use crate::plan::CylinderLanes;
-use crate::trace::kernels::scalar::{Offsets, leads_away, line_misses};
-use crate::trace::kernels::{KernelRay, ROUNDOFF};
+use crate::trace::reject::{Offsets, PlainRay, ROUNDOFF, leads_away, line_misses};
 
 /// Appends to `kept` those of the cylinders `among` that the ray may meet, in order.
-pub fn keep_cylinders(ray: &KernelRay, cylinders: &CylinderLanes, among: &[u32], kept: &mut Vec<u32>) {
+pub fn keep_cylinders(ray: &PlainRay, cylinders: &CylinderLanes, among: &[u32], kept: &mut Vec<u32>) {
     let n_cylinders = cylinders.radius.len();
     let (xs, zs, radii) = (&cylinders.x[..n_cylinders], &cylinders.z[..n_cylinders], &cylinders.radius);
     let [ox, oy, oz] = ray.origin;

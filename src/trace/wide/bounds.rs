@@ -1,0 +1,514 @@
+//! What is known before the first ray: for each face, object, surface and pair of light and object the constants that
+//! the packets work with, and how far each may be off.
+//!
+//! # Errors of eye rays
+//! u = 2⁻⁵³. The direction of an eye ray is d = (X·k, Y·k, −1) with whole X, Y; its coordinates are off by at most a
+//! share e of themselves, which the camera knows. With κ = e + 8u every product of a coordinate of d with an exact number
+//! is within κ of the exact product, relative to it, and so is a sum of two of them relative to the product of lengths.
+//!
+//! *Sphere* with centre c and radius r: b = c·d is off by κ|c||d|, a = |d|² by 2κ·a, and the power p = |c|² − r² is
+//! computed in double-double and rounded. D = b² − a·p is therefore off by at most a·σ, σ = 8κ(|c|² + r²), so that
+//! b² < a·(p − 2σ) proves a miss. A hit is taken only if b² > a·(p + g²r²), which says that the cosine between normal and
+//! ray is above g; g²r² is at least 4σ. Then |d| times the error of t = p/(b + √D) is at most
+//! κ|c| + 0.75·σ/(g·r) + 3u|P|, because t/(b + √D) ≤ 1/a, and the point P is off by at most A/g with
+//! A = κ(3(|c| + r) + 6(|c|² + r²)/r). Where the sphere is far, D = a·r² − |c × d|² is off by κ(5r|c| + 6r²) only, and
+//! A = 8κ(|c| + r). The normal (P − c)/r is off by A/(g·r) + 4u.
+//!
+//! *Wall*: the same in x and z; a length along the ray is at most F = |d|/|(dx, dz)| times as long as its shadow.
+//!
+//! *Cap* at height Y: the point is (X/Y'·Y, Y, −Y/(Y'·k)), with relative errors below 3κ, and within
+//! |c| + r + |Y| of the eye; the normal is exact.
+//!
+//! # Errors of lengths from a light
+//! For an object at m from a light and a segment w from the light to a point that is off by e, with
+//! τ = |w|·(e + 4u|w|): b = m·w is off by |m|τ/|w|, a = |w|² by 2τ, and D = b² − a·p by (2|m|² + 2|p|)·τ; twice that is
+//! used.
+
+use crate::ir::Surface;
+use crate::math::DoubleDouble;
+use crate::plan::{Light, Object, Part, Plan, Scene};
+
+/// Half an ulp of 1: the relative error of one rounding is at most this.
+pub(super) const U: f64 = f64::EPSILON / 2.0;
+
+/// The smallest cosine between ray and normal at which a hit is taken: the silhouettes of curved faces are left to finer
+/// arithmetic.
+pub(super) const MIN_COSINE: f64 = 1.0 / 512.0;
+
+/// The same for caps, on which nothing is lost but length.
+pub(super) const MIN_CAP_COSINE: f64 = 1.0 / 16384.0;
+
+/// The largest error of a normal at which a hit is taken: what is neglected in second order stays below a hundredth of the
+/// bounds as long as this is below a 64th of the smallest cosine.
+pub(super) const MAX_NORMAL_ERROR: f64 = 1.0 / 16_777_216.0;
+
+/// Lengths, colours and exponents beyond these are left to finer arithmetic: products of four lengths neither overflow
+/// nor lose anything to underflow that the bounds would notice.
+const MAX_LENGTH: f64 = (1_u64 << 60) as f64;
+const MIN_RADIUS: f64 = 1.0 / MAX_LENGTH;
+const MAX_COEFFICIENT: f64 = (1_u64 << 20) as f64;
+
+/// How far from a surface, as a share of the lengths squared, a point must be to have a side.
+const MIN_POWER: f64 = 1e-9;
+
+/// A face and how an eye ray meets it.
+#[derive(Clone, Debug)]
+pub(super) struct Face {
+    pub kind: FaceKind,
+    pub object: Object,
+    /// Its place in the order of declaration.
+    pub order: u32,
+    /// The number of its equation.
+    pub equation: u32,
+    pub surface: usize,
+    /// The centre, that of the axis at height 0, or that of the cap.
+    pub center: [f64; 3],
+    pub radius: f64,
+    pub inv_radius: f64,
+    /// How far off a point is where an eye ray meets it, and the normal there.
+    pub eye_point_error: f64,
+    pub eye_normal_error: f64,
+    /// A: the error of such a point times the cosine between normal and ray.
+    pub eye_error_at_right_angles: f64,
+}
+
+/// What a face is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum FaceKind {
+    Sphere,
+    Wall,
+    LowerCap,
+    UpperCap,
+}
+
+/// A sphere as eye rays see it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct EyeSphere {
+    pub center: [f64; 3],
+    pub radius_squared: f64,
+    /// p.
+    pub power: f64,
+    /// p − 2σ and p + g²r².
+    pub power_low: f64,
+    pub power_high: f64,
+    /// Whether D is taken from the cross product.
+    pub is_far: bool,
+    /// How far two t must be apart to have an order, half of it.
+    pub margin: f64,
+    pub face: u32,
+}
+
+/// A cylinder as eye rays see it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct EyeCylinder {
+    pub x: f64,
+    pub z: f64,
+    /// The wall, unless the eye is inside of its infinite continuation.
+    pub wall: Option<EyeWall>,
+    /// The cap that faces the eye.
+    pub cap: Option<EyeCap>,
+}
+
+/// A wall as eye rays see it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct EyeWall {
+    pub power: f64,
+    pub power_low: f64,
+    pub power_high: f64,
+    /// Heights surely below, surely above the lower end, and surely below, surely above the upper end.
+    pub below: f64,
+    pub floor: f64,
+    pub ceiling: f64,
+    pub above: f64,
+    pub margin: f64,
+    pub face: u32,
+}
+
+/// A cap as eye rays see it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct EyeCap {
+    pub height: f64,
+    /// Squared distances from the axis that are surely within and surely beyond the radius.
+    pub within: f64,
+    pub beyond: f64,
+    pub margin: f64,
+    pub face: u32,
+}
+
+/// How an object lies to a light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Side {
+    /// The light is outside of the sphere or infinite wall.
+    Outside,
+    /// The light is inside of the infinite wall, and above or below the cylinder.
+    InLine,
+    /// Nothing is proved about what it hides.
+    Unknown,
+}
+
+/// An object as a light sees it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Occluder {
+    /// From the light to the centre or axis.
+    pub m: [f64; 3],
+    pub m_length: f64,
+    pub power: f64,
+    /// What τ is multiplied with to bound the error of D.
+    pub slack: f64,
+    pub radius_squared: f64,
+    pub y_min: f64,
+    pub y_max: f64,
+    pub side: Side,
+}
+
+/// A light, and what each object is to it.
+#[derive(Clone, Debug)]
+pub(super) struct WideLight {
+    pub position: [f64; 3],
+    pub spheres: Vec<Occluder>,
+    pub cylinders: Vec<Occluder>,
+}
+
+/// How (n·H)^P is computed from (n·H)².
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Power {
+    /// P = 0.
+    One,
+    /// Whole P: that many squares, and the number itself if P is odd.
+    Whole { half: u32, is_odd: bool },
+    /// Another P, by `libm`.
+    Other(f64),
+}
+
+/// What a surface makes of each light.
+#[derive(Clone, Debug)]
+pub(super) struct Terms {
+    pub ambient: [f64; 3],
+    pub lights: Vec<LightTerms>,
+    pub has_diffuse: bool,
+    pub has_specular: bool,
+    pub power: Power,
+    /// P, at least 1: what an error of n·H is multiplied with.
+    pub steepness: f64,
+    /// 0 when nothing is reflected.
+    pub reflectance: f64,
+    /// Whether no term is negative.
+    pub is_nonnegative: bool,
+    /// A bound on what the sums of all terms lose to rounding.
+    pub rounding: f64,
+}
+
+/// What a surface makes of one light.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LightTerms {
+    /// Cl·Cd and Cl·Cs.
+    pub diffuse: [f64; 3],
+    pub specular: [f64; 3],
+    /// Their largest magnitudes.
+    pub max_diffuse: f64,
+    pub max_specular: f64,
+}
+
+/// The constants of one image.
+#[derive(Clone, Debug)]
+pub(super) struct Bounds {
+    /// κ.
+    pub eye_roundoff: f64,
+    /// All faces: those of spheres, then three for each cylinder, the wall, the lower and the upper cap.
+    pub faces: Vec<Face>,
+    pub spheres: Vec<EyeSphere>,
+    pub cylinders: Vec<EyeCylinder>,
+    pub lights: Vec<WideLight>,
+    pub terms: Vec<Terms>,
+    /// At least the distance between any two points of objects.
+    pub extent: f64,
+    pub wall_equations: Vec<u32>,
+    pub sphere_equations: Vec<u32>,
+}
+
+impl Bounds {
+    /// Works out the constants of an image whose eye rays' coordinates are off by `dir_error`, relative to them.
+    ///
+    /// `max_slope`: at least |dy| of any eye ray. Returns `None` for scenes that are left to finer arithmetic altogether.
+    pub fn new(plan: &Plan<'_>, dir_error: f64, max_slope: f64) -> Option<Self> {
+        let scene = &plan.scene;
+        if !is_moderate(scene) {
+            return None;
+        }
+        let eye = Eye { roundoff: dir_error + 8.0 * U, stretch: (1.0 + max_slope * max_slope).sqrt() };
+        let n_spheres = scene.spheres.radius.len();
+        let mut faces = Vec::new();
+        let spheres = (0..n_spheres).map(|i| eye_sphere(scene, eye, i, &mut faces)).collect::<Option<Vec<_>>>()?;
+        let n_cylinders = scene.cylinders.radius.len();
+        let cylinders =
+            (0..n_cylinders).map(|i| eye_cylinder(scene, eye, i, &mut faces)).collect::<Option<Vec<_>>>()?;
+        Some(Self {
+            eye_roundoff: eye.roundoff,
+            faces,
+            spheres,
+            cylinders,
+            lights: scene.lights.iter().map(|light| seen_from(scene, light)).collect(),
+            terms: scene.surfaces.iter().map(|s| terms_of(s, &scene.lights, plan.settings.part)).collect(),
+            extent: extent(scene),
+            sphere_equations: scene.sphere_equations[..n_spheres].iter().map(|id| id.number()).collect(),
+            wall_equations: scene.wall_equations[..n_cylinders].iter().map(|id| id.number()).collect(),
+        })
+    }
+}
+
+/// Tells whether all numbers of a scene lie where the bounds hold.
+fn is_moderate(scene: &Scene<'_>) -> bool {
+    let (s, c) = (&scene.spheres, &scene.cylinders);
+    let lengths = [&s.x, &s.y, &s.z, &s.radius, &c.x, &c.z, &c.radius, &c.y_min, &c.y_max];
+    let lights = scene.lights.iter().flat_map(|light| light.position.to_array());
+    let colors = scene.lights.iter().flat_map(|light| light.color.to_array());
+    let surfaces = scene.surfaces.iter().flat_map(|s| [s.ambient, s.diffuse, s.specular].map(|c| c.to_array()));
+    lengths.into_iter().flatten().copied().chain(lights).all(|length| length.abs() <= MAX_LENGTH)
+        && s.radius.iter().chain(&c.radius).all(|&radius| radius >= MIN_RADIUS)
+        && colors.chain(surfaces.flatten()).chain(scene.background.to_array()).all(|c| c.abs() <= MAX_COEFFICIENT)
+        && scene.surfaces.iter().all(|s| s.reflectance <= MAX_COEFFICIENT)
+}
+
+/// Returns at least the distance between any two points of the objects.
+fn extent(scene: &Scene<'_>) -> f64 {
+    let (s, c) = (&scene.spheres, &scene.cylinders);
+    let of_sphere = |i: usize| s.x[i].abs() + s.y[i].abs() + s.z[i].abs() + s.radius[i];
+    let of_cylinder = |i: usize| c.x[i].abs() + c.z[i].abs() + c.radius[i] + c.y_min[i].abs().max(c.y_max[i].abs());
+    let spheres = (0..s.radius.len()).map(of_sphere);
+    let reach = spheres.chain((0..c.radius.len()).map(of_cylinder)).fold(0.0, f64::max);
+    2.01 * reach
+}
+
+/// The power of the origin with regard to a circle or sphere at `m`, and |m|² + r².
+fn power<const N: usize>(m: [DoubleDouble; N], radius: f64) -> (f64, f64) {
+    let radius_squared = DoubleDouble::product(radius, radius);
+    let distance_squared = m.into_iter().fold(DoubleDouble::ZERO, |sum, coordinate| sum + coordinate.square());
+    ((distance_squared - radius_squared).hi(), (distance_squared + radius_squared).hi())
+}
+
+/// What bounds of eye rays depend on.
+#[derive(Clone, Copy)]
+struct Eye {
+    /// κ.
+    roundoff: f64,
+    /// F.
+    stretch: f64,
+}
+
+/// What the eye sees of a sphere or infinite wall from outside.
+struct Silhouette {
+    power: f64,
+    power_low: f64,
+    power_high: f64,
+    /// A.
+    error: f64,
+    /// g.
+    cosine: f64,
+    is_far: bool,
+}
+
+/// Returns `None` when the eye is not surely outside.
+fn silhouette<const N: usize>(eye: Eye, center: [f64; N], radius: f64) -> Option<Silhouette> {
+    let (power, squares) = power(center.map(DoubleDouble::from), radius);
+    let sigma = 8.0 * eye.roundoff * squares;
+    if power <= 4.0 * sigma {
+        return None;
+    }
+    let distance = (power + radius * radius).sqrt();
+    let is_far = distance > 16.0 * radius;
+    let kappa = 1.1 * eye.roundoff * if N == 2 { eye.stretch } else { 1.0 };
+    let error = if is_far {
+        8.0 * kappa * (distance + radius)
+    } else {
+        kappa * (3.0 * (distance + radius) + 6.0 * squares / radius)
+    };
+    let for_normal = error / (radius * MAX_NORMAL_ERROR);
+    let cosine_squared = (MIN_COSINE * MIN_COSINE).max(4.0 * sigma / (radius * radius)).max(for_normal * for_normal);
+    // Seen so badly that no hit is sure.
+    let power_high =
+        if cosine_squared > 0.25 { f64::INFINITY } else { power + cosine_squared * radius * radius * 1.001 };
+    let cosine = cosine_squared.sqrt();
+    Some(Silhouette { power, power_low: power - 2.0 * sigma, power_high, error, cosine, is_far })
+}
+
+fn eye_sphere(scene: &Scene<'_>, eye: Eye, i: usize, faces: &mut Vec<Face>) -> Option<EyeSphere> {
+    let s = &scene.spheres;
+    let (center, radius) = ([s.x[i], s.y[i], s.z[i]], s.radius[i]);
+    let seen = silhouette(eye, center, radius)?;
+    let point_error = seen.error / seen.cosine;
+    let primitive = scene.sphere_primitives[i];
+    faces.push(Face {
+        kind: FaceKind::Sphere,
+        object: Object::Sphere(i as u32),
+        order: primitive.order,
+        equation: scene.sphere_equations[i].number(),
+        surface: primitive.surface.index(),
+        center,
+        radius,
+        inv_radius: 1.0 / radius,
+        eye_point_error: point_error,
+        eye_normal_error: point_error / radius + 4.0 * U,
+        eye_error_at_right_angles: seen.error,
+    });
+    Some(EyeSphere {
+        center,
+        radius_squared: radius * radius,
+        power: seen.power,
+        power_low: seen.power_low,
+        power_high: seen.power_high,
+        is_far: seen.is_far,
+        margin: 2.0 * point_error,
+        face: faces.len() as u32 - 1,
+    })
+}
+
+/// Returns `None` when the eye is not surely outside.
+fn eye_cylinder(scene: &Scene<'_>, eye: Eye, i: usize, faces: &mut Vec<Face>) -> Option<EyeCylinder> {
+    let c = &scene.cylinders;
+    let (x, z, radius, y_min, y_max) = (c.x[i], c.z[i], c.radius[i], c.y_min[i], c.y_max[i]);
+    let seen = silhouette(eye, [x, z], radius);
+    let (power, squares) = power([x, z].map(DoubleDouble::from), radius);
+    let is_inside_wall = power < -32.0 * eye.roundoff * squares;
+    let (is_over, is_under) = (y_max < 0.0, y_min > 0.0);
+    if seen.is_none() && !(is_inside_wall && (is_over || is_under)) {
+        return None;
+    }
+    let first_face = faces.len() as u32;
+    let primitive = scene.cylinder_primitives[i];
+    let axis_distance = x.abs() + z.abs();
+    let kinds = [(FaceKind::Wall, 0.0), (FaceKind::LowerCap, y_min), (FaceKind::UpperCap, y_max)];
+    let [lower, upper] = scene.cap_equations[i];
+    for ((kind, height), equation) in kinds.into_iter().zip([scene.wall_equations[i], lower, upper]) {
+        let (point_error, error) = match (&seen, kind) {
+            (Some(seen), FaceKind::Wall) => (seen.error / seen.cosine, seen.error),
+            (None, FaceKind::Wall) => (f64::INFINITY, f64::INFINITY),
+            _ => {
+                let error = 5.0 * eye.roundoff * (axis_distance + radius + height.abs());
+                (error, error)
+            }
+        };
+        faces.push(Face {
+            kind,
+            object: Object::Cylinder(i as u32),
+            order: primitive.order,
+            equation: equation.number(),
+            surface: primitive.surface.index(),
+            center: [x, height, z],
+            radius,
+            inv_radius: 1.0 / radius,
+            eye_point_error: point_error,
+            eye_normal_error: if kind == FaceKind::Wall { point_error / radius + 4.0 * U } else { 0.0 },
+            eye_error_at_right_angles: error,
+        });
+    }
+    let wall = seen.map(|seen| {
+        let slack = 2.0 * seen.error / seen.cosine + 4.0 * U * y_min.abs().max(y_max.abs());
+        EyeWall {
+            power: seen.power,
+            power_low: seen.power_low,
+            power_high: seen.power_high,
+            below: y_min - slack,
+            floor: y_min + slack,
+            ceiling: y_max - slack,
+            above: y_max + slack,
+            margin: slack,
+            face: first_face,
+        }
+    });
+    let cap = (is_over || is_under).then(|| {
+        let height = if is_over { y_max } else { y_min };
+        let reach = axis_distance + radius + height.abs();
+        let (squared, slack) = (radius * radius, 16.0 * eye.roundoff * radius * reach);
+        EyeCap {
+            height,
+            within: squared - slack,
+            beyond: squared + slack,
+            margin: 10.0 * eye.roundoff * reach,
+            face: first_face + if is_over { 2 } else { 1 },
+        }
+    });
+    Some(EyeCylinder { x, z, wall, cap })
+}
+
+/// Works out what every object is to a light.
+fn seen_from(scene: &Scene<'_>, light: &Light) -> WideLight {
+    let (s, c) = (&scene.spheres, &scene.cylinders);
+    let position = light.position.to_array();
+    let [x, y, z] = position;
+    let sphere = |i: usize| {
+        let m = [DoubleDouble::sum(s.x[i], -x), DoubleDouble::sum(s.y[i], -y), DoubleDouble::sum(s.z[i], -z)];
+        let (power, squares) = power(m, s.radius[i]);
+        let side = if power > MIN_POWER * squares { Side::Outside } else { Side::Unknown };
+        occluder(m, power, s.radius[i], [0.0; 2], side)
+    };
+    let cylinder = |i: usize| {
+        let m = [DoubleDouble::sum(c.x[i], -x), DoubleDouble::ZERO, DoubleDouble::sum(c.z[i], -z)];
+        let (power, squares) = power(m, c.radius[i]);
+        let is_in_line = power < -MIN_POWER * squares && (y > c.y_max[i] || y < c.y_min[i]);
+        let side = match () {
+            () if power > MIN_POWER * squares => Side::Outside,
+            () if is_in_line => Side::InLine,
+            () => Side::Unknown,
+        };
+        occluder(m, power, c.radius[i], [c.y_min[i], c.y_max[i]], side)
+    };
+    WideLight {
+        position,
+        spheres: (0..s.radius.len()).map(sphere).collect(),
+        cylinders: (0..c.radius.len()).map(cylinder).collect(),
+    }
+}
+
+fn occluder(m: [DoubleDouble; 3], power: f64, radius: f64, [y_min, y_max]: [f64; 2], side: Side) -> Occluder {
+    let m = m.map(DoubleDouble::hi);
+    let m_squared = m[0] * m[0] + m[1] * m[1] + m[2] * m[2];
+    let radius_squared = radius * radius;
+    Occluder {
+        m,
+        m_length: 1.001 * m_squared.sqrt(),
+        power,
+        slack: 4.01 * (m_squared + power.abs()),
+        radius_squared,
+        y_min,
+        y_max,
+        side,
+    }
+}
+
+/// Multiplies out what a surface makes of each light.
+fn terms_of(surface: &Surface, lights: &[Light], part: Part) -> Terms {
+    let is_b = part == Part::B;
+    let zero = glam::DVec3::ZERO;
+    let (ambient, specular) = if is_b { (surface.ambient, surface.specular) } else { (zero, zero) };
+    let largest = |color: glam::DVec3| color.abs().max_element();
+    let lights: Vec<_> = (lights.iter())
+        .map(|light| {
+            let (diffuse, specular) = (light.color * surface.diffuse, light.color * specular);
+            LightTerms {
+                diffuse: diffuse.to_array(),
+                specular: specular.to_array(),
+                max_diffuse: largest(diffuse),
+                max_specular: largest(specular),
+            }
+        })
+        .collect();
+    let total = lights.iter().fold(largest(ambient), |sum, terms| sum + terms.max_diffuse + terms.max_specular);
+    let shininess = surface.shininess;
+    let power = match shininess {
+        0.0 => Power::One,
+        p if p.fract() == 0.0 && p <= 1e6 => Power::Whole { half: (p / 2.0) as u32, is_odd: p % 2.0 == 1.0 },
+        p => Power::Other(p),
+    };
+    let terms = |terms: &LightTerms| terms.diffuse.into_iter().chain(terms.specular).all(|term| term >= 0.0);
+    Terms {
+        ambient: ambient.to_array(),
+        has_diffuse: surface.diffuse != zero,
+        has_specular: specular != zero,
+        power,
+        steepness: shininess.max(1.0),
+        reflectance: if is_b { surface.reflectance.max(0.0) } else { 0.0 },
+        is_nonnegative: ambient.min_element() >= 0.0 && lights.iter().all(terms),
+        rounding: 8.0 * U * (lights.len() + 4) as f64 * total,
+        lights,
+    }
+}

@@ -1,0 +1,377 @@
+//! Reflected rays: what they carry, where they go and what they meet first.
+//!
+//! # Errors
+//! A ray is the line through o along the unit vector d; the exact ray starts within e of o and its direction is within ε of
+//! d. With M at least the distance between any two points of objects, E = e + M·ε + 8u·M bounds how far the exact ray is
+//! off at any point where it may meet something, and the error of b = m·d. D = b² − |m|² + r² is off by at most 6M·E, and
+//! for a wall, where a = dx² + dz² stands before |m|² − r², by 8M·E.
+//!
+//! *How far off a hit is*, is measured, not predicted. Let P be the computed point, off the surface by ρ (for a sphere
+//! | |P − c| − r |, known from the length of the computed normal), and γ the cosine between normal and ray. The exact ray
+//! passes P at a distance of at most e + t·ε + 8u·M =: δ. Along the ray its distance from the surface changes by γ for each
+//! unit of length, up to second order, so the exact ray meets the surface within (δ·sin + ρ)/γ of the point where it passes
+//! P, and that point is within (δ + ρ)/γ of P. The second order is below a 20th of that as long as the error of the normal is
+//! below a 64th of γ, which is made sure.
+//!
+//! *The reflected direction* d − 2(n·d)n depends on d as an isometry does; a normal that is off by η across itself turns
+//! it by 2η, and one that is not of unit length by ζ stretches it by 4ζ.
+
+use crate::plan::Object;
+use crate::trace::kernels::{Lanes, Mask};
+use crate::trace::wide::bounds::{Bounds, Face, FaceKind, MAX_NORMAL_ERROR, MIN_CAP_COSINE, MIN_COSINE, Terms, U};
+use crate::trace::wide::eye::{MAX_LANES, Nearest};
+use crate::trace::wide::shade::{Colors, Points, dot};
+
+/// A packet of reflected rays, and what becomes of the colours they find.
+///
+/// The pixel's channel is min(A + B·x, H) for the colour x, within 0…1, of the ray, and off by `error` for an exact x.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Rays<L: Lanes> {
+    pub origin: [L; 3],
+    /// A unit vector.
+    pub dir: [L; 3],
+    pub origin_error: L,
+    pub dir_error: L,
+    /// The number of the equation that the ray leaves.
+    pub leaving: L,
+    /// A.
+    pub sum: [L; 3],
+    /// H.
+    pub ceiling: [L; 3],
+    /// B.
+    pub weight: L,
+    pub error: L,
+    /// The place in the tile.
+    pub pixel: L,
+}
+
+/// How many numbers there are for each ray.
+const N_NUMBERS: usize = 18;
+
+/// Reflected rays that wait to be traced, number by number.
+#[derive(Clone, Debug)]
+pub(super) struct Queue {
+    len: usize,
+    numbers: [Vec<f64>; N_NUMBERS],
+}
+
+impl Queue {
+    /// Makes a queue for as many rays.
+    pub fn new(capacity: usize) -> Self {
+        // Packets are written and read as a whole, whatever number of rays is in them.
+        Self { len: 0, numbers: std::array::from_fn(|_| vec![0.0; capacity + 2 * MAX_LANES]) }
+    }
+
+    /// Returns how many rays there are.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Takes all rays out.
+    pub fn clear(&mut self) {
+        self.len = 0;
+    }
+
+    /// Adds the rays of the mask.
+    #[inline(always)]
+    pub fn push<L: Lanes>(&mut self, rays: &Rays<L>, mask: L::Mask) {
+        let ([ox, oy, oz], [dx, dy, dz]) = (rays.origin, rays.dir);
+        let ([ar, ag, ab], [hr, hg, hb]) = (rays.sum, rays.ceiling);
+        let numbers: [L; N_NUMBERS] = [
+            ox,
+            oy,
+            oz,
+            dx,
+            dy,
+            dz,
+            rays.origin_error,
+            rays.dir_error,
+            rays.leaving,
+            ar,
+            ag,
+            ab,
+            hr,
+            hg,
+            hb,
+            rays.weight,
+            rays.error,
+            rays.pixel,
+        ];
+        for (lanes, to) in numbers.into_iter().zip(&mut self.numbers) {
+            lanes.store_packed(mask, &mut to[self.len..]);
+        }
+        self.len += mask.bits().count_ones() as usize;
+    }
+
+    /// Returns the packet from this ray on, and which of its lanes hold a ray.
+    #[inline(always)]
+    pub fn packet<L: Lanes>(&self, first: usize) -> (Rays<L>, L::Mask) {
+        let mut numbers = [L::splat(0.0); N_NUMBERS];
+        for (lanes, from) in numbers.iter_mut().zip(&self.numbers) {
+            *lanes = L::load(&from[first..]);
+        }
+        let [ox, oy, oz, dx, dy, dz, origin_error, dir_error, leaving, ar, ag, ab, hr, hg, hb, weight, error, pixel] =
+            numbers;
+        let rays = Rays {
+            origin: [ox, oy, oz],
+            dir: [dx, dy, dz],
+            origin_error,
+            dir_error,
+            leaving,
+            sum: [ar, ag, ab],
+            ceiling: [hr, hg, hb],
+            weight,
+            error,
+            pixel,
+        };
+        let n_rays = (self.len - first).min(L::N);
+        (rays, L::Mask::from_bits((1 << n_rays) - 1))
+    }
+}
+
+/// What the bounds of reflected rays have in common.
+#[derive(Clone, Copy, Debug)]
+struct Reach<L> {
+    /// E.
+    off: L,
+    /// 6M·E, and 8M·E.
+    sphere_slack: L,
+    wall_slack: L,
+}
+
+/// Finds what a packet of reflected rays meets first.
+#[inline(always)]
+pub(super) fn nearest_hit<L: Lanes>(
+    bounds: &Bounds,
+    spheres: &[u32],
+    cylinders: &[u32],
+    rays: &Rays<L>,
+    active: L::Mask,
+) -> Nearest<L> {
+    let extent = bounds.extent;
+    let rounding = L::splat(8.0 * U * extent);
+    let off = rays.origin_error + rays.dir_error * L::splat(extent) + rounding;
+    let reach = Reach { off, sphere_slack: off * L::splat(6.0 * extent), wall_slack: off * L::splat(8.0 * extent) };
+    let mut nearest = Nearest::nothing();
+    for &i in spheres {
+        meet_sphere(&mut nearest, bounds, &bounds.faces[i as usize], rays, &reach, active);
+    }
+    for &i in cylinders {
+        let first = bounds.spheres.len() + 3 * i as usize;
+        meet_cylinder(&mut nearest, bounds, first, rays, &reach, active);
+    }
+    nearest
+}
+
+#[inline(always)]
+fn meet_sphere<L: Lanes>(
+    nearest: &mut Nearest<L>,
+    bounds: &Bounds,
+    face: &Face,
+    rays: &Rays<L>,
+    reach: &Reach<L>,
+    active: L::Mask,
+) {
+    let m: [L; 3] = [
+        L::splat(face.center[0]) - rays.origin[0],
+        L::splat(face.center[1]) - rays.origin[1],
+        L::splat(face.center[2]) - rays.origin[2],
+    ];
+    let squared = face.radius * face.radius;
+    let b = dot(m, rays.dir);
+    let power = dot(m, m) - L::splat(squared);
+    let discriminant = b * b - power;
+    let is_other = !rays.leaving.eq(L::splat(f64::from(face.equation)));
+    let maybe = active & is_other & discriminant.ge(-reach.sphere_slack) & b.ge(-reach.off);
+    if !maybe.any() {
+        return;
+    }
+    let is_proper = discriminant.gt(reach.sphere_slack + L::splat(squared * MIN_COSINE * MIN_COSINE));
+    let hit = maybe & is_proper & b.gt(reach.off) & power.gt(reach.sphere_slack * L::splat(2.0));
+    nearest.doubt = nearest.doubt | (maybe & !hit);
+    if hit.any() {
+        let t = b - discriminant.sqrt();
+        // The root is off by at most its square's error by g·r.
+        let margin = reach.off + reach.sphere_slack * L::splat(1.0 / (MIN_COSINE * face.radius));
+        nearest.consider(bounds, hit, t, margin + margin, sphere_face(face));
+    }
+}
+
+/// The faces of spheres come first, in order.
+fn sphere_face(face: &Face) -> u32 {
+    match face.object {
+        Object::Sphere(i) | Object::Cylinder(i) => i,
+    }
+}
+
+/// Tests a packet against a cylinder whose wall is the face `first`.
+///
+/// The origin lies outside of the cylinder or on it. Inside of the infinite wall runs the part of the ray from `enter` to
+/// `leave`; the ray meets the wall if it enters at a height of the cylinder's, and a cap if it enters on one side of it and
+/// leaves, or would leave, on the other.
+#[inline(always)]
+fn meet_cylinder<L: Lanes>(
+    nearest: &mut Nearest<L>,
+    bounds: &Bounds,
+    first: usize,
+    rays: &Rays<L>,
+    reach: &Reach<L>,
+    active: L::Mask,
+) {
+    let (wall, lower, upper) = (&bounds.faces[first], &bounds.faces[first + 1], &bounds.faces[first + 2]);
+    let ([ox, oy, oz], [dx, dy, dz]) = (rays.origin, rays.dir);
+    let (mx, mz) = (L::splat(wall.center[0]) - ox, L::splat(wall.center[2]) - oz);
+    let squared = wall.radius * wall.radius;
+    let a = dx * dx + dz * dz;
+    let b = mx * dx + mz * dz;
+    let power = mx * mx + mz * mz - L::splat(squared);
+    let discriminant = b * b - a * power;
+    let slack = reach.wall_slack;
+    let is_other = !rays.leaving.eq(L::splat(f64::from(wall.equation)));
+    let is_outside = power.gt(slack);
+    let is_inside = power.lt(-slack);
+    let leads_away = is_outside & b.lt(-reach.off);
+    let maybe = active & is_other & discriminant.ge(-slack) & !leads_away;
+    if !maybe.any() {
+        return;
+    }
+    let (y_min, y_max) = (L::splat(lower.center[1]), L::splat(upper.center[1]));
+    // A ray that leaves this cap, or one level with it.
+    let zero = L::splat(0.0);
+    let leaves_top = rays.leaving.eq(L::splat(f64::from(upper.equation))) & dy.gt(zero);
+    let leaves_bottom = rays.leaving.eq(L::splat(f64::from(lower.equation))) & dy.lt(zero);
+
+    let is_proper = discriminant.gt(slack * L::splat(4.0) + L::splat(squared * MIN_COSINE * MIN_COSINE));
+    let root = discriminant.max(zero).sqrt();
+    let per_a = L::splat(1.0) / a;
+    let (enter, leave) = ((b - root) * per_a, (b + root) * per_a);
+    let stretch = leave.abs() * (rays.dir_error * L::splat(2.0) + L::splat(8.0 * U));
+    let slip = per_a * (reach.off + slack / root + stretch) * L::splat(1.5);
+    let height_slip = slip + reach.off * L::splat(2.0) + stretch;
+    let (first_height, last_height) = (oy + enter * dy, oy + leave * dy);
+    let (floor, ceiling) = (y_min + height_slip, y_max - height_slip);
+    let (below, above) = (y_min - height_slip, y_max + height_slip);
+
+    let starts_above = (is_outside & first_height.gt(above)) | (is_inside & oy.gt(y_max + rays.origin_error));
+    let starts_below = (is_outside & first_height.lt(below)) | (is_inside & oy.lt(y_min - rays.origin_error));
+    let meets_wall = is_outside & b.gt(reach.off) & enter.gt(slip) & first_height.gt(floor) & first_height.lt(ceiling);
+    let meets_top = starts_above & last_height.lt(ceiling) & dy.lt(L::splat(-MIN_CAP_COSINE));
+    let meets_bottom = starts_below & last_height.gt(floor) & dy.gt(L::splat(MIN_CAP_COSINE));
+    let passes = (starts_above & last_height.gt(above)) | (starts_below & last_height.lt(below));
+
+    let sure = maybe & is_proper;
+    let (on_wall, on_top, on_bottom) = (sure & meets_wall, sure & meets_top, sure & meets_bottom);
+    let misses = (sure & passes) | (is_inside & (leaves_top | leaves_bottom));
+    nearest.doubt = nearest.doubt | (maybe & !(on_wall | on_top | on_bottom | misses));
+    let first = first as u32;
+    if on_wall.any() {
+        nearest.consider(bounds, on_wall, enter, slip + slip, first);
+    }
+    for (lanes, height, face) in [(on_bottom, y_min, first + 1), (on_top, y_max, first + 2)] {
+        if lanes.any() {
+            let rise = L::splat(1.0) / dy;
+            let margin = reach.off * rise.abs();
+            nearest.consider(bounds, lanes, (height - oy) * rise, margin + margin, face);
+        }
+    }
+}
+
+/// Works out the points where a packet of reflected rays meets one face, and how far they are off; returns them with the
+/// lanes of which too little is known.
+#[inline(always)]
+pub(super) fn points<L: Lanes>(
+    bounds: &Bounds,
+    face: &Face,
+    rays: &Rays<L>,
+    t: L,
+    lanes: L::Mask,
+) -> (Points<L>, L::Mask) {
+    let zero = L::splat(0.0);
+    let extent = bounds.extent;
+    let [x, y, z] =
+        [rays.origin[0] + rays.dir[0] * t, rays.origin[1] + rays.dir[1] * t, rays.origin[2] + rays.dir[2] * t];
+    let inv_radius = L::splat(face.inv_radius);
+    let nx = (x - L::splat(face.center[0])) * inv_radius;
+    let nz = (z - L::splat(face.center[2])) * inv_radius;
+    let (point, normal) = match face.kind {
+        FaceKind::Sphere => ([x, y, z], [nx, (y - L::splat(face.center[1])) * inv_radius, nz]),
+        FaceKind::Wall => ([x, y, z], [nx, zero, nz]),
+        FaceKind::LowerCap => ([x, L::splat(face.center[1]), z], [zero, L::splat(-1.0), zero]),
+        FaceKind::UpperCap => ([x, L::splat(face.center[1]), z], [zero, L::splat(1.0), zero]),
+    };
+    let cosine = -dot(normal, rays.dir);
+    let passes_within = rays.origin_error + t * rays.dir_error + L::splat(8.0 * U * extent);
+    let is_curved = matches!(face.kind, FaceKind::Sphere | FaceKind::Wall);
+    let (point_error, normal_error, length_error, vague) = if is_curved {
+        // | |n|² − 1 | / 2, with what the normal's own roundings hide.
+        let length_error = (dot(normal, normal) - L::splat(1.0)).abs() * L::splat(0.5) + L::splat(8.0 * U);
+        let off_surface = length_error * L::splat(face.radius);
+        let point_error = (passes_within + off_surface) / cosine * L::splat(1.06);
+        let normal_error = point_error * inv_radius + L::splat(4.0 * U);
+        let is_known = cosine.gt(L::splat(MIN_COSINE)) & normal_error.lt(L::splat(MAX_NORMAL_ERROR));
+        (point_error, normal_error, length_error, lanes & !is_known)
+    } else {
+        let point_error = passes_within / cosine * L::splat(1.01);
+        (point_error, zero, zero, lanes & !cosine.gt(L::splat(MIN_CAP_COSINE)))
+    };
+    let view = [-rays.dir[0], -rays.dir[1], -rays.dir[2]];
+    let active = lanes & !vague;
+    let dir_error = rays.dir_error;
+    (Points { point, normal, view, point_error, normal_error, length_error, dir_error, active }, vague)
+}
+
+/// Returns the rays that leave a packet of hits on a mirror, given the rays that met it.
+#[inline(always)]
+pub(super) fn reflect<L: Lanes>(
+    face: &Face,
+    terms: &Terms,
+    at: &Points<L>,
+    local: &Colors<L>,
+    rays: &Rays<L>,
+) -> Rays<L> {
+    let twice = dot(at.normal, at.view) * L::splat(2.0);
+    let dir = [at.normal[0] * twice - at.view[0], at.normal[1] * twice - at.view[1], at.normal[2] * twice - at.view[2]];
+    let dir_error = at.dir_error * L::splat(1.001)
+        + at.normal_error * L::splat(2.05)
+        + at.length_error * L::splat(4.0)
+        + L::splat(16.0 * U);
+    let weight = rays.weight;
+    let sum = [
+        rays.sum[0] + weight * local.color[0],
+        rays.sum[1] + weight * local.color[1],
+        rays.sum[2] + weight * local.color[2],
+    ];
+    let ceiling = [
+        rays.ceiling[0].min(rays.sum[0] + weight),
+        rays.ceiling[1].min(rays.sum[1] + weight),
+        rays.ceiling[2].min(rays.sum[2] + weight),
+    ];
+    Rays {
+        origin: at.point,
+        dir,
+        origin_error: at.point_error,
+        dir_error,
+        leaving: L::splat(f64::from(face.equation)),
+        sum,
+        ceiling,
+        weight: weight * L::splat(terms.reflectance),
+        error: rays.error + weight * local.error,
+        pixel: rays.pixel,
+    }
+}
+
+/// Returns the colour of the pixels whose last rays found `color`, and its error.
+///
+/// `n_levels`: from the eye to there; each has lost at most eight roundings of the sum.
+#[inline(always)]
+pub(super) fn compose<L: Lanes>(rays: &Rays<L>, color: [L; 3], error: L, n_levels: u32) -> ([L; 3], L) {
+    let (zero, one) = (L::splat(0.0), L::splat(1.0));
+    let mut channels = color;
+    let mut largest = one;
+    for (channel, (sum, ceiling)) in channels.iter_mut().zip(rays.sum.into_iter().zip(rays.ceiling)) {
+        *channel = (sum + rays.weight * channel.min(one).max(zero)).min(ceiling);
+        largest = largest.max(sum + rays.weight);
+    }
+    let rounding = largest * L::splat(8.0 * U * f64::from(n_levels + 2));
+    (channels, rays.error + rays.weight * error + rounding)
+}

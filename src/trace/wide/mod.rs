@@ -1,0 +1,488 @@
+//! The wide tracer: packets of pixels in plain binary64, with bounds that are known beforehand.
+//!
+//! A tile goes through three stages. Its eye rays find what they meet first ([`eye`]); the hits are shaded, face by face
+//! ([`shade`], [`shadow`]); mirrors send rays on, which wait in a queue and are traced level by level ([`mirror`]). The
+//! bounds on all errors are worked out once for an image ([`bounds`]), where they can be, and carried with the rays where
+//! not. A pixel of which every comparison and the rounding of every channel is decided beyond them is the pixel that
+//! exact arithmetic gives. Every other pixel is left to `pixel::settle`: silhouettes, edges of shadows, colours at a step,
+//! and what is not dealt with here at all. So nothing here has to be right about a hard case, only about what is easy.
+//!
+//! The colour of a mirror's pixel is composed on the way in: it is min(A + B·x, H) for the colour x that is still to be
+//! found, because no term of these mirrors is negative.
+//!
+//! Never here: ties, an epsilon.
+
+mod bounds;
+mod eye;
+mod mirror;
+mod shade;
+mod shadow;
+
+use std::ops::Range;
+
+use crate::math::{Ball64, Real};
+use crate::plan::{Candidates, Plan};
+use crate::trace::Counts;
+use crate::trace::kernels::{Backend, Job, Lanes, Mask};
+use crate::trace::pixel::Sampling;
+
+use self::bounds::{Bounds, Face, FaceKind};
+use self::eye::{EyeRays, Nearest, RowSphere};
+use self::mirror::{Queue, Rays};
+use self::shade::{Colors, Points};
+use self::shadow::LightOccluders;
+
+/// The most columns of a tile.
+const TILE_WIDTH: usize = 64;
+
+/// The most rows of a tile.
+const TILE_HEIGHT: usize = 16;
+
+const TILE_PIXELS: usize = TILE_WIDTH * TILE_HEIGHT;
+
+/// More objects are left to the slower way: the tables below grow with faces times lights.
+const MAX_OBJECTS: usize = 512;
+
+/// What is prepared for one image.
+#[derive(Debug)]
+pub(super) struct Wide {
+    backend: Backend,
+    bounds: Bounds,
+    /// Of the camera, rounded.
+    step: f64,
+    background: u32,
+}
+
+/// A rectangle of pixels inside of one tile of the plan.
+#[derive(Clone, Debug)]
+pub(super) struct Rect {
+    pub columns: Range<u32>,
+    pub rows: Range<u32>,
+}
+
+/// What a thread needs to trace tiles.
+#[derive(Debug)]
+pub(super) struct Scratch {
+    /// Red + 2⁸·green + 2¹⁶·blue, row by row.
+    pixels: Vec<u32>,
+    /// For each packet the lanes that are left to finer arithmetic.
+    slow: Vec<u32>,
+    /// t of the nearest hits.
+    t: Vec<f64>,
+    hits: Vec<PacketHit>,
+    rows: Vec<RowSphere>,
+    /// For each face what can hide the lights from it, once it is met.
+    occluders: Vec<Option<LightOccluders>>,
+    waiting: Queue,
+    next: Queue,
+    pub counts: Counts,
+}
+
+/// The lanes of a packet that meet a face.
+#[derive(Clone, Copy, Debug)]
+struct PacketHit {
+    face: u32,
+    packet: u32,
+    lanes: u32,
+}
+
+impl Wide {
+    /// Prepares what a plan has left; `None` when none of it can be done wide.
+    pub fn new(plan: &Plan<'_>, step: Ball64, backend: Backend) -> Option<Self> {
+        let n_objects = plan.scene.spheres.radius.len() + plan.scene.cylinders.radius.len();
+        let settings = &plan.settings;
+        if n_objects > MAX_OBJECTS || settings.samples != 1 {
+            return None;
+        }
+        let dir_error = 1.01 * step.error() / step.value() + 2.0 * bounds::U;
+        let max_slope = 1.01 * step.value() * f64::from(settings.size.height() + 2);
+        let max_side = step.value() * f64::from(settings.size.width() + 2);
+        let is_moderate = step.value() > 1e-9 && max_slope < 1e6 && max_side < 1e6 && dir_error < 1e-12;
+        let background = crate::trace::pixel::bytes_of(plan.scene.background)?;
+        Some(Self {
+            backend,
+            bounds: is_moderate.then(|| Bounds::new(plan, dir_error, max_slope)).flatten()?,
+            step: step.value(),
+            background: u32::from_le_bytes([background[0], background[1], background[2], 0]),
+        })
+    }
+
+    /// Makes what a thread needs.
+    pub fn scratch(&self) -> Scratch {
+        let has_mirrors = self.bounds.terms.iter().any(|terms| terms.reflectance > 0.0);
+        let capacity = if has_mirrors { TILE_PIXELS } else { 0 };
+        Scratch {
+            pixels: vec![0; TILE_PIXELS],
+            slow: vec![0; TILE_PIXELS / 8],
+            t: vec![0.0; TILE_PIXELS],
+            hits: Vec::new(),
+            rows: Vec::new(),
+            occluders: vec![None; self.bounds.faces.len()],
+            waiting: Queue::new(capacity),
+            next: Queue::new(capacity),
+            counts: Counts::default(),
+        }
+    }
+
+    /// Cuts rows into tiles; each lies within one tile of the plan and starts at a multiple of eight columns.
+    pub fn tiles(plan: &Plan<'_>, rows: Range<u32>) -> impl Iterator<Item = Rect> {
+        let (width, height) = (plan.settings.size.width(), plan.tiles.height().min(TILE_HEIGHT as u32));
+        let plan_width = plan.tiles.width();
+        let cut = move |from: u32, end: u32, step: u32| end.min((from / step + 1) * step);
+        let mut row = rows.start;
+        let bands = std::iter::from_fn(move || {
+            let band = row..cut(row, rows.end, height);
+            row = band.end;
+            (!band.is_empty()).then_some(band)
+        });
+        bands.flat_map(move |rows| {
+            let mut column = 0;
+            std::iter::from_fn(move || {
+                let end = width.min(column + TILE_WIDTH as u32).min(cut(column, width, plan_width));
+                let columns = column..end;
+                column = end;
+                (!columns.is_empty()).then(|| Rect { columns, rows: rows.clone() })
+            })
+        })
+    }
+
+    /// Traces a tile into the scratch.
+    pub fn trace(&self, plan: &Plan<'_>, sampling: &Sampling, rect: &Rect, scratch: &mut Scratch) {
+        self.backend.run(TileJob { wide: self, plan, sampling, rect, scratch });
+    }
+}
+
+impl Scratch {
+    /// Writes the pixels of the tile that was traced into an image `width` pixels wide, whose first row is `first_row`.
+    pub fn write(&self, rect: &Rect, rgb: &mut [u8], width: usize, first_row: u32) {
+        let n_columns = rect.columns.len();
+        for (pixels, row) in self.pixels.chunks_exact(TILE_WIDTH).zip(rect.rows.clone()) {
+            let first = ((row - first_row) as usize * width + rect.columns.start as usize) * 3;
+            let to = &mut rgb[first..first + n_columns * 3];
+            for (to, pixel) in to.chunks_exact_mut(3).zip(pixels) {
+                to.copy_from_slice(&pixel.to_le_bytes()[..3]);
+            }
+        }
+    }
+
+    /// Calls `settle` with the column and row of each pixel of the tile that is left to finer arithmetic.
+    pub fn for_slow(&self, rect: &Rect, mut settle: impl FnMut(u32, u32)) {
+        for (packet, lanes) in self.slow.iter().enumerate() {
+            let mut rest = *lanes;
+            while rest != 0 {
+                let pixel = packet * 8 + rest.trailing_zeros() as usize;
+                rest &= rest - 1;
+                let (column, row) = ((pixel % TILE_WIDTH) as u32, (pixel / TILE_WIDTH) as u32);
+                if column < rect.columns.len() as u32 && row < rect.rows.len() as u32 {
+                    settle(rect.columns.start + column, rect.rows.start + row);
+                }
+            }
+        }
+    }
+}
+
+/// One tile.
+struct TileJob<'a> {
+    wide: &'a Wide,
+    plan: &'a Plan<'a>,
+    sampling: &'a Sampling,
+    rect: &'a Rect,
+    scratch: &'a mut Scratch,
+}
+
+impl Job for TileJob<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(mut self) {
+        self.scratch.slow.fill(0);
+        self.scratch.pixels.fill(self.wide.background);
+        let among = self.plan.tiles.candidates(self.rect.columns.start, self.rect.rows.start);
+        self.scratch.counts.eye_rays += (self.rect.columns.len() * self.rect.rows.len()) as u64;
+        if among.is_empty() {
+            return;
+        }
+        self.meet::<L>(among);
+        self.scratch.hits.sort_unstable_by_key(|hit| (hit.face, hit.packet));
+        self.scratch.waiting.clear();
+        self.shade::<L>();
+        self.follow::<L>();
+    }
+}
+
+impl TileJob<'_> {
+    /// Returns dx of the packet's eye rays and dy of its row.
+    #[inline(always)]
+    fn directions<L: Lanes>(&self, packet: usize) -> (L, f64) {
+        let (column, row) = (packet * L::N % TILE_WIDTH, packet * L::N / TILE_WIDTH);
+        let (left, top) =
+            self.sampling.first_sample(self.rect.columns.start + column as u32, self.rect.rows.start + row as u32);
+        let steps =
+            L::load(&[0.0, 2.0, 4.0, 6.0, 8.0, 10.0, 12.0, 14.0, 16.0, 18.0, 20.0, 22.0, 24.0, 26.0, 28.0, 30.0]);
+        ((L::splat(left as f64) + steps) * L::splat(self.wide.step), top as f64 * self.wide.step)
+    }
+
+    /// Finds what each eye ray meets first.
+    #[inline(always)]
+    fn meet<L: Lanes>(&mut self, among: Candidates<'_>) {
+        let bounds = &self.wide.bounds;
+        let n_packets = self.rect.columns.len().div_ceil(L::N);
+        self.scratch.hits.clear();
+        self.scratch.counts.tests += (n_packets * self.rect.rows.len() * among.len() * L::N) as u64;
+        for row in 0..self.rect.rows.len() {
+            let first = row * (TILE_WIDTH / L::N);
+            let (_, dy) = self.directions::<L>(first);
+            self.scratch.rows.clear();
+            for &i in among.spheres {
+                self.scratch.rows.push(RowSphere::new(&bounds.spheres[i as usize], dy));
+            }
+            for packet in first..first + n_packets {
+                let (dx, _) = self.directions::<L>(packet);
+                let a_wall = dx * dx + L::splat(1.0);
+                let rays = EyeRays { dx, a_wall, a: a_wall + L::splat(dy * dy), dy };
+                let mut nearest = Nearest::nothing();
+                for (&i, row) in among.spheres.iter().zip(&self.scratch.rows) {
+                    eye::meet_sphere(&mut nearest, bounds, &rays, &bounds.spheres[i as usize], row);
+                }
+                for &i in among.cylinders {
+                    eye::meet_cylinder(&mut nearest, bounds, &rays, &bounds.cylinders[i as usize]);
+                }
+                let met = nearest.met() & !nearest.doubt;
+                self.mark_slow::<L>(packet, nearest.doubt);
+                if met.any() {
+                    self.record(packet, &nearest, met.bits());
+                }
+            }
+        }
+    }
+
+    /// Records the hits of a packet, face by face.
+    #[inline(always)]
+    fn record<L: Lanes>(&mut self, packet: usize, nearest: &Nearest<L>, met: u32) {
+        nearest.t.store(&mut self.scratch.t[packet * L::N..]);
+        let mut faces = [0.0; eye::MAX_LANES];
+        nearest.face.store(&mut faces);
+        let mut rest = met;
+        while rest != 0 {
+            let face = faces[rest.trailing_zeros() as usize];
+            let lanes = nearest.face.eq(L::splat(face)).bits() & rest;
+            rest &= !lanes;
+            self.scratch.hits.push(PacketHit { face: face as u32, packet: packet as u32, lanes });
+        }
+    }
+
+    #[inline(always)]
+    fn mark_slow<L: Lanes>(&mut self, packet: usize, lanes: L::Mask) {
+        mark(&mut self.scratch.slow, packet * L::N, lanes.bits());
+    }
+
+    /// Shades what eye rays have met, and sends on the rays of mirrors.
+    #[inline(always)]
+    fn shade<L: Lanes>(&mut self) {
+        for hit_idx in 0..self.scratch.hits.len() {
+            let PacketHit { face, packet, lanes } = self.scratch.hits[hit_idx];
+            let (packet, lanes) = (packet as usize, L::Mask::from_bits(lanes));
+            let face = &self.wide.bounds.faces[face as usize];
+            let terms = &self.wide.bounds.terms[face.surface];
+            let at = self.points::<L>(face, packet, lanes);
+            let colors = self.local::<L>(face, &at);
+            self.mark_slow::<L>(packet, lanes & colors.doubt);
+            let sure = lanes & !colors.doubt;
+            if terms.reflectance > 0.0 {
+                self.send_on(face, &at, &colors, &eye_rays(packet), sure);
+            } else {
+                let (bytes, proved) = shade::quantise(colors.color, colors.error);
+                bytes.store_whole(sure & proved, &mut self.scratch.pixels[packet * L::N..]);
+                self.mark_slow::<L>(packet, sure & !proved);
+            }
+        }
+    }
+
+    /// Works out the points where a packet of eye rays meets a face.
+    #[inline(always)]
+    fn points<L: Lanes>(&self, face: &Face, packet: usize, active: L::Mask) -> Points<L> {
+        let (dx, dy) = self.directions::<L>(packet);
+        let t = L::load(&self.scratch.t[packet * L::N..]);
+        let (dy, zero, one) = (L::splat(dy), L::splat(0.0), L::splat(1.0));
+        let per_length = one / (dx * dx + (dy * dy + one)).sqrt();
+        let view = [-(dx * per_length), -(dy * per_length), per_length];
+        let [x, y, z] = [dx * t, dy * t, -t];
+        let inv_radius = L::splat(face.inv_radius);
+        let [cx, cy, cz] = face.center;
+        let (nx, nz) = ((x - L::splat(cx)) * inv_radius, (z - L::splat(cz)) * inv_radius);
+        let (point, normal) = match face.kind {
+            FaceKind::Sphere => ([x, y, z], [nx, (y - L::splat(cy)) * inv_radius, nz]),
+            FaceKind::Wall => ([x, y, z], [nx, zero, nz]),
+            FaceKind::LowerCap => ([x, L::splat(cy), z], [zero, L::splat(-1.0), zero]),
+            FaceKind::UpperCap => ([x, L::splat(cy), z], [zero, one, zero]),
+        };
+        let is_mirror = self.wide.bounds.terms[face.surface].reflectance > 0.0;
+        let mut point_error = L::splat(face.eye_point_error);
+        let mut normal_error = L::splat(face.eye_normal_error);
+        if is_mirror && matches!(face.kind, FaceKind::Sphere | FaceKind::Wall) {
+            // Reflections multiply the error, so it is taken as it is here, not as it may be at the silhouette.
+            point_error = L::splat(1.1 * face.eye_error_at_right_angles) / shade::dot(normal, view);
+            normal_error = point_error * inv_radius + L::splat(4.0 * bounds::U);
+        }
+        let dir_error = L::splat(2.0 * self.wide.bounds.eye_roundoff);
+        let length_error = normal_error * L::splat(0.5);
+        Points { point, normal, view, point_error, normal_error, length_error, dir_error, active }
+    }
+
+    /// Shades a packet of hits without their reflections.
+    #[inline(always)]
+    fn local<L: Lanes>(&mut self, face: &Face, at: &Points<L>) -> Colors<L> {
+        let bounds = &self.wide.bounds;
+        let face_idx = face_index(bounds, face);
+        let slot = &mut self.scratch.occluders[face_idx];
+        let occluders = slot.get_or_insert_with(|| LightOccluders::new(bounds, self.plan, face));
+        let colors = shade::shade(bounds, &bounds.terms[face.surface], occluders, at);
+        self.scratch.counts.shadow_rays += u64::from(colors.shadow_rays);
+        colors
+    }
+
+    /// Puts the reflections of a packet of hits into the queue.
+    #[inline(always)]
+    fn send_on<L: Lanes>(&mut self, face: &Face, at: &Points<L>, colors: &Colors<L>, rays: &Rays<L>, lanes: L::Mask) {
+        let terms = &self.wide.bounds.terms[face.surface];
+        if !terms.is_nonnegative {
+            self.mark_places(rays.pixel, lanes);
+            return;
+        }
+        let reflected = mirror::reflect(face, terms, at, colors, rays);
+        self.scratch.counts.reflected_rays += u64::from(lanes.bits().count_ones());
+        self.scratch.waiting.push(&reflected, lanes);
+    }
+
+    /// Follows the rays that wait, level by level.
+    #[inline(always)]
+    fn follow<L: Lanes>(&mut self) {
+        let mut level = 1;
+        while self.scratch.waiting.len() > 0 {
+            std::mem::swap(&mut self.scratch.waiting, &mut self.scratch.next);
+            self.scratch.waiting.clear();
+            for first in (0..self.scratch.next.len()).step_by(L::N) {
+                let (rays, active) = self.scratch.next.packet::<L>(first);
+                self.follow_packet(&rays, active, level);
+            }
+            level += 1;
+        }
+    }
+
+    #[inline(always)]
+    fn follow_packet<L: Lanes>(&mut self, rays: &Rays<L>, active: L::Mask, level: u32) {
+        let bounds = &self.wide.bounds;
+        let among = self.plan.mirrored();
+        self.scratch.counts.tests += among.len() as u64 * u64::from(active.bits().count_ones());
+        let nearest = mirror::nearest_hit(bounds, among.spheres, among.cylinders, rays, active);
+        self.mark_places(rays.pixel, active & nearest.doubt);
+        let sure = active & !nearest.doubt;
+        let met = sure & nearest.met();
+        let zero = L::splat(0.0);
+        self.finish(rays, self.plan.scene.background.to_array().map(L::splat), zero, sure & !met, level);
+        if level > self.plan.settings.max_level {
+            self.finish(rays, [zero; 3], zero, met, level);
+            return;
+        }
+        let mut faces = [0.0; eye::MAX_LANES];
+        nearest.face.store(&mut faces);
+        let mut rest = met.bits();
+        while rest != 0 {
+            let face = faces[rest.trailing_zeros() as usize];
+            let lanes = nearest.face.eq(L::splat(face)).bits() & rest;
+            rest &= !lanes;
+            self.shade_reflected(face as usize, rays, nearest.t, L::Mask::from_bits(lanes), level);
+        }
+    }
+
+    /// Shades the hits of reflected rays on one face, and sends them on if it is a mirror.
+    #[inline(always)]
+    fn shade_reflected<L: Lanes>(&mut self, face: usize, rays: &Rays<L>, t: L, lanes: L::Mask, level: u32) {
+        let face = &self.wide.bounds.faces[face];
+        let (at, vague) = mirror::points(&self.wide.bounds, face, rays, t, lanes);
+        self.mark_places(rays.pixel, vague);
+        let colors = self.local(face, &at);
+        self.mark_places(rays.pixel, at.active & colors.doubt);
+        let sure = at.active & !colors.doubt;
+        if self.wide.bounds.terms[face.surface].reflectance > 0.0 {
+            self.send_on(face, &at, &colors, rays, sure);
+        } else {
+            self.finish(rays, colors.color, colors.error, sure, level);
+        }
+    }
+
+    /// Settles the pixels of rays that have found their colour.
+    #[inline(always)]
+    fn finish<L: Lanes>(&mut self, rays: &Rays<L>, color: [L; 3], error: L, lanes: L::Mask, level: u32) {
+        if !lanes.any() {
+            return;
+        }
+        let (color, error) = mirror::compose(rays, color, error, level);
+        let (bytes, proved) = shade::quantise(color, error);
+        self.mark_places(rays.pixel, lanes & !proved);
+        let (mut places, mut found) = ([0.0; eye::MAX_LANES], [0; eye::MAX_LANES]);
+        rays.pixel.store(&mut places);
+        let lanes = lanes & proved;
+        bytes.store_whole(lanes, &mut found);
+        let mut rest = lanes.bits();
+        while rest != 0 {
+            let lane = rest.trailing_zeros() as usize;
+            rest &= rest - 1;
+            self.scratch.pixels[places[lane] as usize] = found[lane];
+        }
+    }
+
+    /// Leaves the pixels of these rays to finer arithmetic.
+    #[inline(always)]
+    fn mark_places<L: Lanes>(&mut self, places: L, lanes: L::Mask) {
+        let mut rest = lanes.bits();
+        if rest == 0 {
+            return;
+        }
+        let mut numbers = [0.0; eye::MAX_LANES];
+        places.store(&mut numbers);
+        while rest != 0 {
+            let lane = rest.trailing_zeros() as usize;
+            rest &= rest - 1;
+            mark(&mut self.scratch.slow, numbers[lane] as usize, 1);
+        }
+    }
+}
+
+/// Marks pixels from one on by the bits; they lie in one group of eight, or in two that begin at `first`.
+fn mark(slow: &mut [u32], first: usize, bits: u32) {
+    slow[first / 8] |= (bits << (first % 8)) & 0xff;
+    if bits > 0xff {
+        slow[first / 8 + 1] |= bits >> 8;
+    }
+}
+
+/// A face's number: faces lie side by side.
+fn face_index(bounds: &Bounds, face: &Face) -> usize {
+    let n_spheres = bounds.spheres.len();
+    match (face.object, face.kind) {
+        (crate::plan::Object::Sphere(i), _) => i as usize,
+        (crate::plan::Object::Cylinder(i), FaceKind::LowerCap) => n_spheres + 3 * i as usize + 1,
+        (crate::plan::Object::Cylinder(i), FaceKind::UpperCap) => n_spheres + 3 * i as usize + 2,
+        (crate::plan::Object::Cylinder(i), _) => n_spheres + 3 * i as usize,
+    }
+}
+
+/// Eye rays as they are before they meet anything: the pixel is the colour they find.
+#[inline(always)]
+fn eye_rays<L: Lanes>(packet: usize) -> Rays<L> {
+    let (zero, one) = (L::splat(0.0), L::splat(1.0));
+    let lanes = L::load(&[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.0, 12.0, 13.0, 14.0, 15.0]);
+    Rays {
+        origin: [zero; 3],
+        dir: [zero; 3],
+        origin_error: zero,
+        dir_error: zero,
+        leaving: zero,
+        sum: [zero; 3],
+        ceiling: [one; 3],
+        weight: one,
+        error: zero,
+        pixel: lanes + L::splat((packet * L::N) as f64),
+    }
+}

@@ -1,0 +1,203 @@
+//! The colour that a packet of hits has by itself.
+//!
+//! # Errors
+//! The point is off by e, the normal by η, the direction of the ray by ε, all as lengths of vectors. With w from the light
+//! to the point, L = −w/|w| is off by λ = 2e/|w| + 8u, so that
+//! - −n·w is off by η|w| + e + 4u|w|, with |w| ≤ (1 + |w|²)/2. A margin of 1024·e more makes sure that |w| > 1024·e where
+//!   a light is lit, so that what is neglected in second order is below a thousandth;
+//! - n·L is off by η + λ;
+//! - with s = 1 + L·V, n·H = (n·L + n·V)/√(2s) is off by (2η + λ + ε + 8u)·(½ + 0.8/s), since 1/√(2s) ≤ ½ + ¼/s, a
+//!   relative error of s is halved, and n·H ≤ 1;
+//! - (n·H)^P is off by P times that for P ≥ 1, by the mean value theorem on 0…1, and by at most 64 times that for P < 1
+//!   where n·H > 2⁻⁶.
+
+use crate::trace::kernels::{Lanes, Mask};
+use crate::trace::wide::bounds::{Bounds, Power, Terms, U};
+use crate::trace::wide::shadow::{LightOccluders, shadow};
+
+/// Added before rounding down; the semantics fix it.
+const QUANTISATION_BIAS: f64 = 1.0 / 1_048_576.0;
+
+/// What the channels of a colour that is exact lose on their way to a byte: four roundings of numbers up to 255, widened.
+const BYTE_ROUNDING: f64 = 1.0 / (1_u64 << 42) as f64;
+
+/// For P < 1, n·H squared must be above this.
+const MIN_N_DOT_H_SQUARED: f64 = 1.0 / 4096.0;
+
+/// s must be above this.
+const MIN_HALF: f64 = 1.0 / 65536.0;
+
+/// A packet of hits on one face.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Points<L: Lanes> {
+    pub point: [L; 3],
+    /// The unit normal.
+    pub normal: [L; 3],
+    /// The unit vector to where the ray comes from; used for specular light alone.
+    pub view: [L; 3],
+    pub point_error: L,
+    pub normal_error: L,
+    /// How far the computed normal is from unit length.
+    pub length_error: L,
+    pub dir_error: L,
+    /// The lanes that there are.
+    pub active: L::Mask,
+}
+
+/// A packet of colours.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Colors<L: Lanes> {
+    /// Not clamped.
+    pub color: [L; 3],
+    /// A bound on the error of each channel.
+    pub error: L,
+    /// The lanes in which a light may be lit or not.
+    pub doubt: L::Mask,
+    /// How many shadow rays it took.
+    pub shadow_rays: u32,
+}
+
+/// Returns a·b.
+#[inline(always)]
+pub(super) fn dot<L: Lanes>(a: [L; 3], b: [L; 3]) -> L {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// Shades a packet of hits without their reflections.
+#[inline(always)]
+pub(super) fn shade<L: Lanes>(bounds: &Bounds, terms: &Terms, occluders: &LightOccluders, at: &Points<L>) -> Colors<L> {
+    let none = L::Mask::from_bits(0);
+    let zero = L::splat(0.0);
+    let mut colors = Colors { color: terms.ambient.map(L::splat), error: zero, doubt: none, shadow_rays: 0 };
+    if !terms.has_diffuse && !terms.has_specular {
+        return colors;
+    }
+    let mut any_lit = none;
+    let (half, one) = (L::splat(0.5), L::splat(1.0));
+    let normal_slack = at.normal_error + L::splat(8.0 * U);
+    let point_slack = at.point_error * L::splat(1026.0);
+    for (light_idx, (light, light_terms)) in bounds.lights.iter().zip(&terms.lights).enumerate() {
+        let w: [L; 3] = [
+            at.point[0] - L::splat(light.position[0]),
+            at.point[1] - L::splat(light.position[1]),
+            at.point[2] - L::splat(light.position[2]),
+        ];
+        let a = dot(w, w);
+        let toward = -dot(at.normal, w);
+        let margin = normal_slack * (half * a + half) + point_slack;
+        let faces = at.active & toward.gt(-margin);
+        if !faces.any() {
+            continue;
+        }
+        let sure = toward.gt(margin);
+        colors.doubt = colors.doubt | (faces & !sure);
+        let facing = faces & sure;
+        let distance = a.sqrt();
+        colors.shadow_rays += facing.bits().count_ones();
+        let (blocked, doubt) = shadow(light, occluders, light_idx, &w, a, distance, at, facing);
+        colors.doubt = colors.doubt | doubt;
+        let lit = facing & !blocked;
+        if !lit.any() {
+            continue;
+        }
+        any_lit = any_lit | lit;
+        let per_distance = one / distance;
+        let n_dot_l = toward * per_distance;
+        let light_slack = at.point_error * L::splat(2.0) * per_distance + L::splat(8.0 * U);
+        let mut error = (at.normal_error + light_slack + L::splat(16.0 * U)) * L::splat(light_terms.max_diffuse);
+        let mut sum = [
+            n_dot_l * L::splat(light_terms.diffuse[0]),
+            n_dot_l * L::splat(light_terms.diffuse[1]),
+            n_dot_l * L::splat(light_terms.diffuse[2]),
+        ];
+        if terms.has_specular {
+            let n_dot_v = dot(at.normal, at.view);
+            let l_dot_v = -(dot(w, at.view) * per_distance);
+            let s = one + l_dot_v;
+            let doubled = n_dot_l + n_dot_v;
+            let per_s = one / s;
+            let squared = (doubled * doubled * half * per_s).min(one);
+            let mut vague = lit & !s.gt(L::splat(MIN_HALF));
+            let slack = at.normal_error * L::splat(2.0) + light_slack + at.dir_error + L::splat(8.0 * U);
+            let off = slack * (half + L::splat(0.8) * per_s) + L::splat(8.0 * U);
+            let (power, gain) = match terms.power {
+                Power::One => (one, 0.0),
+                Power::Whole { half, is_odd } => (raise(squared, half, is_odd), terms.steepness),
+                Power::Other(exponent) => {
+                    if exponent < 1.0 {
+                        vague = vague | (lit & !squared.gt(L::splat(MIN_N_DOT_H_SQUARED)));
+                    }
+                    (raise_each(squared, exponent, lit), terms.steepness * 64.0)
+                }
+            };
+            colors.doubt = colors.doubt | vague;
+            let specular_error = off * L::splat(gain) + L::splat((2.0 * terms.steepness.min(1e9) + 16.0) * U);
+            error = error + specular_error * L::splat(light_terms.max_specular);
+            sum = [
+                sum[0] + power * L::splat(light_terms.specular[0]),
+                sum[1] + power * L::splat(light_terms.specular[1]),
+                sum[2] + power * L::splat(light_terms.specular[2]),
+            ];
+        }
+        colors.error = colors.error + L::select(lit, error, zero);
+        colors.color = [
+            colors.color[0] + L::select(lit, sum[0], zero),
+            colors.color[1] + L::select(lit, sum[1], zero),
+            colors.color[2] + L::select(lit, sum[2], zero),
+        ];
+    }
+    // Where no light adds anything the colour is exact.
+    colors.error = L::select(any_lit, colors.error + L::splat(terms.rounding), colors.error);
+    colors
+}
+
+/// Returns x^P, given x² and P as twice `half`, or one more.
+#[inline(always)]
+fn raise<L: Lanes>(squared: L, half: u32, is_odd: bool) -> L {
+    let mut result = if is_odd { squared.sqrt() } else { L::splat(1.0) };
+    let (mut factor, mut rest) = (squared, half);
+    while rest > 0 {
+        if rest & 1 != 0 {
+            result = result * factor;
+        }
+        rest >>= 1;
+        factor = factor * factor;
+    }
+    result
+}
+
+/// Returns x^P, given x², lane by lane.
+#[inline(always)]
+fn raise_each<L: Lanes>(squared: L, exponent: f64, lanes: L::Mask) -> L {
+    let mut numbers = [0.0; 16];
+    squared.store(&mut numbers);
+    raise_slice(&mut numbers[..L::N], exponent, lanes.bits());
+    L::load(&numbers)
+}
+
+/// Raises those of the squares that the bits name to the power.
+fn raise_slice(squares: &mut [f64], exponent: f64, bits: u32) {
+    for (i, number) in squares.iter_mut().enumerate() {
+        *number = if bits >> i & 1 != 0 { libm::pow(number.sqrt(), exponent) } else { 0.0 };
+    }
+}
+
+/// Returns the bytes of a packet of colours, as red + 2⁸·green + 2¹⁶·blue, and the lanes in which all three are proved.
+///
+/// `error`: of each channel.
+#[inline(always)]
+pub(super) fn quantise<L: Lanes>(color: [L; 3], error: L) -> (L, L::Mask) {
+    let (zero, half, one) = (L::splat(0.0), L::splat(0.5), L::splat(1.0));
+    let room = half - (error * L::splat(255.5) + L::splat(BYTE_ROUNDING));
+    let mut floors = [zero; 3];
+    let mut sure = L::Mask::from_bits(u32::MAX);
+    for (floor, channel) in floors.iter_mut().zip(color) {
+        let scaled = channel.min(one).max(zero) * L::splat(255.0) + L::splat(QUANTISATION_BIAS);
+        *floor = scaled.floor();
+        let is_inside = (scaled - *floor - half).abs().lt(room);
+        // What is clamped for sure is a whole number however large the error.
+        let is_clamped = (channel - error).gt(one) | (channel + error).lt(zero);
+        sure = sure & (is_inside | is_clamped);
+    }
+    (floors[0] + floors[1] * L::splat(256.0) + floors[2] * L::splat(65536.0), sure)
+}
