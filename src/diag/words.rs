@@ -11,6 +11,12 @@ pub fn quoted(word: &str) -> String {
     in_backticks(word, MAX_QUOTED)
 }
 
+/// Returns a word of a scene as it is, cut off when it is long.
+#[must_use]
+pub fn shortened(word: &str) -> String {
+    cut(word, MAX_QUOTED)
+}
+
 /// Returns the help to write `text` in place of what stands there.
 #[must_use]
 pub fn proposed(text: &str) -> String {
@@ -18,9 +24,13 @@ pub fn proposed(text: &str) -> String {
 }
 
 fn in_backticks(text: &str, max_chars: usize) -> String {
+    format!("`{}`", cut(text, max_chars))
+}
+
+fn cut(text: &str, max_chars: usize) -> String {
     match text.char_indices().nth(max_chars) {
-        Some((end, _)) => format!("`{}…`", &text[..end]),
-        None => format!("`{text}`"),
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text.to_owned(),
     }
 }
 

@@ -1,6 +1,6 @@
 //! The values of arguments against the ranges of the command table.
 
-use crate::diag::words::{named, proposed, quoted};
+use crate::diag::words::{named, proposed, quoted, shortened};
 use crate::diag::{Code, Diagnostic, codes};
 use crate::source::{Source, Span};
 use crate::syntax::spec::{CommandKind, CommandSpec, Range};
@@ -39,6 +39,11 @@ impl Values<'_> {
         self.source.slice(self.spans[index])
     }
 
+    /// Returns the text of a number for a message.
+    fn shown(&self, index: usize) -> String {
+        shortened(self.text(index))
+    }
+
     fn check_ranges(&self, acc: &mut Vec<Diagnostic>) {
         for (index, (arg, &number)) in self.spec.numbers().iter().zip(self.numbers).enumerate() {
             if !arg.range.allows(number) {
@@ -57,7 +62,7 @@ impl Values<'_> {
     }
 
     fn angle(&self, index: usize, limit: f64) -> Diagnostic {
-        let message = format!("a field of view of {} degrees is out of range", self.text(index));
+        let message = format!("a field of view of {} degrees is out of range", self.shown(index));
         let help = if self.numbers[index] > 0.0 {
             "a usual angle is `60`; a wide one is `120`"
         } else {
@@ -67,22 +72,22 @@ impl Values<'_> {
     }
 
     fn exponent(&self, index: usize) -> Diagnostic {
-        let message = format!("the shininess `{}` is negative: {}", self.spec.numbers()[index].name, self.text(index));
+        let message = format!("the shininess `{}` is negative: {}", self.spec.numbers()[index].name, self.shown(index));
         self.at(&codes::NEGATIVE_SHININESS, index, message)
             .label("must be 0 or above")
             .help(format!("write {} if the sign is a slip", quoted(self.text(index).trim_start_matches('-'))))
     }
 
     fn radius(&self, index: usize) -> Diagnostic {
-        let (name, text) = (self.spec.name, self.text(index));
+        let (name, text, shown) = (self.spec.name, self.text(index), self.shown(index));
         let mantissa = text.split(['e', 'E']).next().unwrap_or(text);
         let is_rounded = mantissa.bytes().any(|byte| (b'1'..=b'9').contains(&byte));
         let (message, help) = if self.numbers[index] < 0.0 {
             let repair = quoted(text.trim_start_matches('-'));
-            (format!("the radius of a `{name}` is negative: {text}"), format!("write {repair} if the sign is a slip"))
+            (format!("the radius of a `{name}` is negative: {shown}"), format!("write {repair} if the sign is a slip"))
         } else if is_rounded {
             let help = "the smallest radius is about 5e-324; scale the scene up";
-            (format!("the radius {text} of a `{name}` is so small that it is 0"), help.to_owned())
+            (format!("the radius {shown} of a `{name}` is so small that it is 0"), help.to_owned())
         } else {
             let help = "write a radius above 0, or remove the object";
             (format!("the radius of a `{name}` is 0"), help.to_owned())
@@ -94,7 +99,7 @@ impl Values<'_> {
         let Some((low, high)) = find_unordered(self.spec, self.numbers) else { return };
         let args = self.spec.numbers();
         let (low_name, high_name) = (args[low].name, args[high].name);
-        let (low_text, high_text) = (self.text(low), self.text(high));
+        let (low_text, high_text) = (self.shown(low), self.shown(high));
         let span = self.spans[low].to(self.spans[high]);
         let (message, help) = if self.numbers[low] > self.numbers[high] {
             let message = format!("`{low_name}` {low_text} is above `{high_name}` {high_text}");
@@ -134,7 +139,7 @@ impl Values<'_> {
         let Some((&first, others)) = outside.split_first() else { return };
         let names = named(outside.iter().map(|&index| args[index].name));
         let message = match others {
-            [] => format!("{names} of `{}` is {}, outside 0 to 1", self.spec.name, self.text(first)),
+            [] => format!("{names} of `{}` is {}, outside 0 to 1", self.spec.name, self.shown(first)),
             _ => format!("{names} of `{}` are outside 0 to 1", self.spec.name),
         };
         let diagnostic = self
