@@ -68,11 +68,6 @@ impl<T> Arena<T> {
         Handle::new(index)
     }
 
-    /// Makes room for `n` more elements.
-    pub fn reserve(&mut self, n: usize) {
-        self.items.reserve(n);
-    }
-
     /// Returns the number of elements.
     #[must_use]
     pub fn len(&self) -> u32 {

@@ -7,6 +7,7 @@
 
 mod arena;
 mod dump;
+mod equations;
 mod program;
 mod scene;
 mod validate;
@@ -14,7 +15,8 @@ mod view;
 
 pub use arena::{Arena, Handle};
 pub use dump::{dump_arenas, dump_arenas_json, dump_commands, dump_commands_json};
+pub use equations::{EquationId, Equations};
 pub use program::{Command, Origins, Program};
 pub use scene::{Cylinder, Light, Sphere, Surface};
-pub use validate::{EquationId, Equations, Valid, Violation, validate};
+pub use validate::{Valid, Violation, validate};
 pub use view::{Registers, SceneView};

@@ -5,45 +5,10 @@
 
 use std::ops::Deref;
 
-use rustc_hash::FxHashMap;
+use rayon::prelude::*;
 
-use crate::ir::{Command, Program};
-
-/// The identity of a surface equation: two surfaces are the same set of points exactly when their ids are equal.
-///
-/// A sphere is its centre and radius, a cylinder's wall its axis and radius whatever its height, a cap the plane y = const
-/// whatever its axis.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct EquationId(u32);
-
-impl EquationId {
-    /// Returns the number that dumps show; equal numbers mean equal equations.
-    #[must_use]
-    pub const fn number(self) -> u32 {
-        self.0
-    }
-}
-
-/// The identity of every surface equation of a program.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Equations {
-    /// For each sphere.
-    pub spheres: Vec<EquationId>,
-    /// For each cylinder its wall.
-    pub walls: Vec<EquationId>,
-    /// For each cylinder its caps: the planes y = y_min and y = y_max.
-    pub caps: Vec<[EquationId; 2]>,
-}
-
-/// The coefficients of an equation by their bits, with −0 as 0. NaN marks what an equation does not have.
-#[derive(PartialEq, Eq, Hash)]
-struct EquationKey([u64; 4]);
-
-impl EquationKey {
-    fn new(coefficients: [f64; 4]) -> Self {
-        Self(coefficients.map(|c| (c + 0.0).to_bits()))
-    }
-}
+use crate::ir::equations::{Equations, identify_equations};
+use crate::ir::{Command, Program, Sphere};
 
 /// One way in which a program is unsound.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -116,36 +81,44 @@ pub fn validate(program: Program) -> Result<Valid, Vec<Violation>> {
     Ok(Valid { program, equations })
 }
 
+/// From so many items on it pays to wake the other threads.
+const MANY: usize = 1 << 14;
+
 fn find_violations(program: &Program) -> Vec<Violation> {
-    let mut found = Vec::new();
     let has_surface = |surface| program.surfaces.get(surface).is_some();
-    for (i, light) in (0..).zip(program.lights.as_slice()) {
-        if !(light.color.is_finite() && light.position.is_finite()) {
-            found.push(Violation::LightNotFinite(i));
-        }
-    }
-    for (i, s) in (0..).zip(program.surfaces.as_slice()) {
+    let mut found = find_bad(program.lights.as_slice(), Violation::LightNotFinite, |light| {
+        light.color.is_finite() && light.position.is_finite()
+    });
+    found.extend(find_bad(program.surfaces.as_slice(), Violation::BadSurface, |s| {
         let finite = s.ambient.is_finite() && s.diffuse.is_finite() && s.specular.is_finite();
-        if !(finite && s.shininess.is_finite() && s.reflectance.is_finite() && s.shininess >= 0.0) {
-            found.push(Violation::BadSurface(i));
-        }
-    }
-    for (i, s) in (0..).zip(program.spheres.as_slice()) {
-        if !(s.center.is_finite() && s.radius.is_finite() && s.radius > 0.0 && has_surface(s.surface)) {
-            found.push(Violation::BadSphere(i));
-        }
-    }
-    for (i, c) in (0..).zip(program.cylinders.as_slice()) {
+        finite && s.shininess.is_finite() && s.reflectance.is_finite() && s.shininess >= 0.0
+    }));
+    found.extend(find_bad(program.spheres.as_slice(), Violation::BadSphere, |s| {
+        s.center.is_finite() && s.radius.is_finite() && s.radius > 0.0 && has_surface(s.surface)
+    }));
+    found.extend(find_bad(program.cylinders.as_slice(), Violation::BadCylinder, |c| {
         let finite = [c.radius, c.x, c.z, c.y_min, c.y_max].iter().all(|number| number.is_finite());
-        if !(finite && c.radius > 0.0 && c.y_min < c.y_max && has_surface(c.surface)) {
-            found.push(Violation::BadCylinder(i));
-        }
-    }
+        finite && c.radius > 0.0 && c.y_min < c.y_max && has_surface(c.surface)
+    }));
     find_bad_commands(program, &mut found);
     if !orders_are_dense(program) {
         found.push(Violation::BadOrder);
     }
     found
+}
+
+/// Returns the violation of each item that is not sound, in order.
+fn find_bad<T: Sync>(
+    items: &[T],
+    violation: fn(u32) -> Violation,
+    is_sound: impl Fn(&T) -> bool + Sync,
+) -> Vec<Violation> {
+    let bad = |(i, item): (usize, &T)| (!is_sound(item)).then(|| violation(i as u32));
+    if items.len() < MANY {
+        items.iter().enumerate().filter_map(bad).collect()
+    } else {
+        items.par_iter().enumerate().filter_map(bad).collect()
+    }
 }
 
 fn find_bad_commands(program: &Program, found: &mut Vec<Violation>) {
@@ -172,31 +145,23 @@ fn find_bad_commands(program: &Program, found: &mut Vec<Violation>) {
 
 /// Tells whether the orders are those of a merge of the two arenas.
 fn orders_are_dense(program: &Program) -> bool {
-    let mut spheres = program.spheres.as_slice().iter().map(|s| s.order).peekable();
-    let mut cylinders = program.cylinders.as_slice().iter().map(|c| c.order).peekable();
+    let (spheres, cylinders) = (program.spheres.as_slice(), program.cylinders.as_slice());
+    let n_head = spheres.len().min(cylinders.first().map_or(spheres.len(), |first| first.order as usize));
+    let (head, tail) = spheres.split_at(n_head);
+    let mut spheres = tail.iter().map(|s| s.order).peekable();
+    let mut cylinders = cylinders.iter().map(|c| c.order).peekable();
     let n_primitives = program.spheres.len() + program.cylinders.len();
-    (0..n_primitives).all(|order| spheres.next_if_eq(&order).is_some() || cylinders.next_if_eq(&order).is_some())
+    is_counted(head)
+        && (n_head as u32..n_primitives)
+            .all(|order| spheres.next_if_eq(&order).is_some() || cylinders.next_if_eq(&order).is_some())
 }
 
-fn identify_equations(program: &Program) -> Equations {
-    // A sphere has one equation, a cylinder three.
-    let n_equations = program.spheres.len() as usize + 3 * program.cylinders.len() as usize;
-    let mut ids = FxHashMap::with_capacity_and_hasher(n_equations, rustc_hash::FxBuildHasher);
-    let mut next_id = 0;
-    let mut identify = |coefficients: [f64; 4]| {
-        *ids.entry(EquationKey::new(coefficients)).or_insert_with(|| {
-            next_id += 1;
-            EquationId(next_id - 1)
-        })
-    };
-    let spheres = program.spheres.as_slice();
-    let cylinders = program.cylinders.as_slice();
-    Equations {
-        spheres: spheres.iter().map(|s| identify([s.center.x, s.center.y, s.center.z, s.radius])).collect(),
-        walls: cylinders.iter().map(|c| identify([c.x, f64::NAN, c.z, c.radius])).collect(),
-        caps: cylinders
-            .iter()
-            .map(|c| [c.y_min, c.y_max].map(|y| identify([f64::NAN, y, f64::NAN, f64::NAN])))
-            .collect(),
+/// Tells whether the orders of the spheres are 0, 1, 2, …
+fn is_counted(spheres: &[Sphere]) -> bool {
+    let is_next = |(i, sphere): (usize, &Sphere)| sphere.order as usize == i;
+    if spheres.len() < MANY {
+        spheres.iter().enumerate().all(is_next)
+    } else {
+        spheres.par_iter().enumerate().all(is_next)
     }
 }
