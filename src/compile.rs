@@ -1,41 +1,154 @@
 //! The language wing in one step: text in, program and diagnostics out.
+//!
+//! A scene passes through in runs of lines: while one is lowered the next is parsed, and only these two have a tree. Of a
+//! scene with a great many mistakes the first ones are kept and the rest counted, so that memory stays bounded.
 
-use crate::diag::Diagnostic;
+use std::time::Duration;
+
+use crate::diag::{Diagnostic, Severity};
 use crate::ir::Program;
-use crate::lower::{Lowered, lower};
+use crate::lower::{Lowered, Lowering};
 use crate::source::Source;
-use crate::syntax::parse;
+use crate::syntax::Runs;
 
 /// A scene as far as it could be understood.
 #[derive(Debug)]
 pub struct Compilation {
     /// The program; not to be rendered when the scene [has errors](Compilation::has_errors).
     pub program: Program,
-    /// All that was found, in the order of the text.
+    /// What was found, in the order of the text: of errors and of warnings the first [`MAX_LISTED`] each.
     pub diagnostics: Vec<Diagnostic>,
+    /// How many errors were found, those that are not listed included.
+    pub n_errors: usize,
+    /// How many warnings were found, those that are not listed included.
+    pub n_warnings: usize,
+    /// What the stages took.
+    pub times: Times,
+}
+
+/// The most errors of one scene that are listed, and the most warnings: more than anyone reads, and some megabytes.
+pub const MAX_LISTED: usize = 10_000;
+
+/// What the stages of a compilation took. They overlap, so that their sum can be more than the time that passed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Times {
+    /// Text to tree.
+    pub parse: Duration,
+    /// Tree to program.
+    pub lower: Duration,
 }
 
 impl Compilation {
-    /// Puts together what the stages gave; for callers that run them one by one, say to time them.
-    #[must_use]
-    pub fn of_stages(parsed: Vec<Diagnostic>, lowered: Lowered) -> Self {
-        let mut diagnostics = parsed;
-        diagnostics.extend(lowered.diagnostics);
-        diagnostics.sort_by_key(|diagnostic| diagnostic.primary.span.start);
-        Self { program: lowered.program, diagnostics }
-    }
-
     /// Tells whether the scene cannot be rendered.
     #[must_use]
     pub fn has_errors(&self) -> bool {
-        self.diagnostics.iter().any(Diagnostic::is_error)
+        self.n_errors > 0
+    }
+
+    /// Returns how many findings of a severity are not listed.
+    #[must_use]
+    pub fn n_unlisted(&self, severity: Severity) -> usize {
+        let n = match severity {
+            Severity::Error => self.n_errors,
+            Severity::Warning => self.n_warnings,
+        };
+        n.saturating_sub(MAX_LISTED)
     }
 }
 
 /// Parses and lowers a scene.
 #[must_use]
 pub fn compile(source: &Source) -> Compilation {
-    let parse = parse(source);
-    let lowered = lower(source, &parse.file);
-    Compilation::of_stages(parse.diagnostics, lowered)
+    compile_runs(source, Runs::new(source), &|| Duration::ZERO)
+}
+
+/// Does the work of [`compile`] and tells what the stages took. `now` is the time since a fixed moment; the library has
+/// no clock of its own.
+#[must_use]
+pub fn compile_timed(source: &Source, now: &(dyn Fn() -> Duration + Sync)) -> Compilation {
+    compile_runs(source, Runs::new(source), now)
+}
+
+/// Does the work of [`compile`] in chunks of about `chunk_bytes`; the result is the same for any size.
+#[must_use]
+pub fn compile_in_chunks(source: &Source, chunk_bytes: usize) -> Compilation {
+    compile_runs(source, Runs::in_chunks(source, chunk_bytes), &|| Duration::ZERO)
+}
+
+fn compile_runs(source: &Source, mut runs: Runs<'_>, now: &(dyn Fn() -> Duration + Sync)) -> Compilation {
+    let mut lowering = Lowering::new(source);
+    let mut found = Found::default();
+    let mut times = Times::default();
+    let mut next = timed(now, &mut times.parse, || runs.next());
+    while let Some(run) = next {
+        let is_last = runs.is_at_end();
+        let mut lower = || timed(now, &mut times.lower, || lowering.add(&run.file));
+        next = if is_last {
+            // A small scene is a single run: it wakes no other thread.
+            lower();
+            None
+        } else {
+            rayon::join(lower, || timed(now, &mut times.parse, || runs.next())).1
+        };
+        found.add(run.diagnostics, lowering.take_diagnostics());
+    }
+    let Lowered { program, diagnostics } = lowering.finish();
+    found.add(runs.finish(), diagnostics);
+    let (n_errors, n_warnings) = (found.n_errors, found.n_warnings);
+    Compilation { program, diagnostics: found.into_diagnostics(), n_errors, n_warnings, times }
+}
+
+/// Runs `f` and adds the time it takes to `total`.
+fn timed<T>(now: &dyn Fn() -> Duration, total: &mut Duration, f: impl FnOnce() -> T) -> T {
+    let start = now();
+    let result = f();
+    *total += now().saturating_sub(start);
+    result
+}
+
+/// What has been found so far.
+#[derive(Default)]
+struct Found {
+    /// With the stage that found it: of one place the parser speaks first.
+    listed: Vec<(Stage, Diagnostic)>,
+    n_errors: usize,
+    n_warnings: usize,
+}
+
+/// A stage that finds mistakes.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Stage {
+    Parse,
+    Lower,
+}
+
+impl Found {
+    /// Takes what the two stages found in a run.
+    fn add(&mut self, parsed: Vec<Diagnostic>, lowered: Vec<Diagnostic>) {
+        let of_stage = |stage| move |diagnostic| (stage, diagnostic);
+        let parsed = parsed.into_iter().map(of_stage(Stage::Parse));
+        let mut found: Vec<_> = parsed.chain(lowered.into_iter().map(of_stage(Stage::Lower))).collect();
+        sort(&mut found);
+        for (stage, diagnostic) in found {
+            let n = match diagnostic.severity() {
+                Severity::Error => &mut self.n_errors,
+                Severity::Warning => &mut self.n_warnings,
+            };
+            *n += 1;
+            if *n <= MAX_LISTED {
+                self.listed.push((stage, diagnostic));
+            }
+        }
+    }
+
+    /// Returns what is listed, in the order of the text.
+    fn into_diagnostics(mut self) -> Vec<Diagnostic> {
+        sort(&mut self.listed);
+        self.listed.into_iter().map(|(_, diagnostic)| diagnostic).collect()
+    }
+}
+
+/// Sorts by place, then by stage; a stage has its own order.
+fn sort(found: &mut [(Stage, Diagnostic)]) {
+    found.sort_by_key(|(stage, diagnostic)| (diagnostic.primary.span.start, *stage));
 }

@@ -53,4 +53,4 @@ pub mod exec;
 #[cfg(feature = "testing")]
 pub mod testing;
 
-pub use compile::{Compilation, compile};
+pub use compile::{Compilation, MAX_LISTED, Times, compile, compile_in_chunks, compile_timed};

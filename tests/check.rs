@@ -57,6 +57,30 @@ fn warnings_are_fine_until_they_are_denied() {
     assert_eq!(folder.clisc(&["check", "a.cli", "--deny-warnings"]).code, Some(1));
 }
 
+/// The first ten thousand are more than anyone reads; the others are counted, so that memory is bounded.
+#[test]
+fn of_a_great_many_mistakes_the_first_are_listed_and_all_are_counted() {
+    let mut scene = "sphere x\n".repeat(10_050) + "surface 2 0 0  0 0 0  0 0 0  1 0\n" + "foo\n";
+    scene.insert_str(0, "# a comment\n");
+    let folder = Folder::with_scene(&scene);
+    let call = folder.clisc(&["check", "a.cli", "--format", "short"]);
+    assert_eq!(call.code, Some(1));
+    // Warnings have room of their own: here for a colour and for the write that is missing.
+    assert_eq!(call.stdout.lines().count(), 10_002);
+    assert!(call.stdout.starts_with("a.cli:2:8: error[E0205]"), "{}", call.stdout);
+    assert!(!call.stdout.contains("E0201"), "the last error is not among the first");
+    assert_eq!(
+        call.stderr,
+        "`a.cli` has 51 more errors and no more warning that are not listed\n\
+         1 scene checked: 10051 errors, 2 warnings\n"
+    );
+    let call = folder.clisc(&["check", "a.cli", "--format", "json"]);
+    let document: serde_json::Value = serde_json::from_str(&call.stdout).expect("one document");
+    assert_eq!(document["diagnostics"].as_array().map(Vec::len), Some(10_002));
+    assert_eq!((&document["errors"], &document["warnings"]), (&10_051.into(), &2.into()));
+    assert_eq!(document["unlisted"], 51);
+}
+
 #[test]
 fn a_folder_means_every_scene_below_it() {
     let folder = Folder::new();

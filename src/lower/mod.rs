@@ -34,15 +34,13 @@ pub struct Lowered {
 #[must_use]
 pub fn lower(source: &Source, file: &ast::File) -> Lowered {
     let mut lowering = Lowering::new(source);
-    lowering.reserve(file);
-    for command in file.commands() {
-        lowering.step(&command);
-    }
+    lowering.add(file);
     lowering.finish()
 }
 
-/// The state of the machine between two commands.
-struct Lowering<'s> {
+/// Lowers a scene a run of commands at a time; the state of the machine between two commands.
+#[derive(Debug)]
+pub struct Lowering<'s> {
     source: &'s Source,
     program: Program,
     diagnostics: Vec<Diagnostic>,
@@ -52,7 +50,9 @@ struct Lowering<'s> {
 }
 
 impl<'s> Lowering<'s> {
-    fn new(source: &'s Source) -> Self {
+    /// Begins before the first command.
+    #[must_use]
+    pub fn new(source: &'s Source) -> Self {
         Self {
             source,
             program: Program::default(),
@@ -63,20 +63,26 @@ impl<'s> Lowering<'s> {
         }
     }
 
-    /// Makes just enough room for the whole scene.
-    fn reserve(&mut self, file: &ast::File) {
-        let counts = file.counts();
-        let n = |kind| counts[kind as usize];
-        let program = &mut self.program;
-        program.lights.reserve(n(CommandKind::Light));
-        program.surfaces.reserve(n(CommandKind::Surface));
-        program.spheres.reserve(n(CommandKind::Sphere));
-        program.cylinders.reserve(n(CommandKind::Cylinder));
-        let origins = &mut program.origins;
-        origins.lights.reserve(n(CommandKind::Light));
-        origins.surfaces.reserve(n(CommandKind::Surface));
-        origins.spheres.reserve(n(CommandKind::Sphere));
-        origins.cylinders.reserve(n(CommandKind::Cylinder));
+    /// Lowers the commands that follow, the next run of the source or all of it.
+    pub fn add(&mut self, run: &ast::File) {
+        for command in run.commands() {
+            self.step(&command);
+        }
+    }
+
+    /// Returns what has been found wrong since the last call, in the order of the text.
+    pub fn take_diagnostics(&mut self) -> Vec<Diagnostic> {
+        std::mem::take(&mut self.diagnostics)
+    }
+
+    /// Ends behind the last command and reports what only the whole scene shows.
+    #[must_use]
+    pub fn finish(mut self) -> Lowered {
+        lights::check(&self.lights, &mut self.diagnostics);
+        objects::check(&self.objects, &mut self.diagnostics);
+        writes::check(&self.writes, &mut self.diagnostics);
+        self.diagnostics.sort_by_key(|diagnostic| diagnostic.primary.span.start);
+        Lowered { program: self.program, diagnostics: self.diagnostics }
     }
 
     /// Carries out one command.
@@ -104,14 +110,5 @@ impl<'s> Lowering<'s> {
     fn emit(&mut self, command: Command, origin: Span) {
         self.program.commands.push(command);
         self.program.origins.commands.push(origin);
-    }
-
-    /// Reports what only the whole scene shows.
-    fn finish(mut self) -> Lowered {
-        lights::check(&self.lights, &mut self.diagnostics);
-        objects::check(&self.objects, &mut self.diagnostics);
-        writes::check(&self.writes, &mut self.diagnostics);
-        self.diagnostics.sort_by_key(|diagnostic| diagnostic.primary.span.start);
-        Lowered { program: self.program, diagnostics: self.diagnostics }
     }
 }

@@ -47,17 +47,19 @@ pub(super) struct Part {
 }
 
 impl Part {
+    /// Makes an empty part with room for the commands of a usual text of `n_bytes`.
+    pub(super) fn for_text(n_bytes: usize) -> Self {
+        /// What a sphere and a number usually take.
+        const COMMAND_BYTES: usize = 40;
+        const NUMBER_BYTES: usize = 10;
+        Self { nodes: Vec::with_capacity(n_bytes / COMMAND_BYTES), numbers: Vec::with_capacity(n_bytes / NUMBER_BYTES) }
+    }
+
     /// Adds a command.
     pub(super) fn push(&mut self, span: Span, shape: Shape, numbers: &[f64]) {
         let first_number = self.numbers.len() as u32;
         self.numbers.extend_from_slice(numbers);
         self.nodes.push(Node { span, first_number, shape });
-    }
-
-    /// Gives back the room that growing took in advance.
-    pub(super) fn shrink_to_fit(&mut self) {
-        self.nodes.shrink_to_fit();
-        self.numbers.shrink_to_fit();
     }
 
     fn get(&self, node: &Node) -> Command<'_> {
@@ -73,13 +75,19 @@ impl Part {
 /// A parsed scene. Two files are equal when they hold the same commands at the same places.
 #[derive(Debug, Default)]
 pub struct File {
-    /// In the order of the text; how many there are depends on its length alone.
+    /// In the order of the text.
     parts: Vec<Part>,
 }
 
 impl File {
-    pub(super) fn new(parts: Vec<Part>) -> Self {
-        Self { parts }
+    /// Adds the commands of the lines that follow.
+    pub(super) fn push(&mut self, part: Part) {
+        self.parts.push(part);
+    }
+
+    /// Adds the commands of the lines that follow.
+    pub(super) fn append(&mut self, later: Self) {
+        self.parts.extend(later.parts);
     }
 
     /// Returns the commands in the order of the text.

@@ -11,5 +11,5 @@ mod token;
 
 pub use dump::{dump_ast, dump_ast_json, dump_tokens, dump_tokens_json};
 pub use lexer::lex;
-pub use parser::{Parse, argument_spans, file_name, parse, parse_in_chunks};
+pub use parser::{Parse, Runs, argument_spans, file_name, parse, parse_in_chunks};
 pub use token::{Token, TokenKind};

@@ -2,11 +2,12 @@
 //!
 //! Each function panics when its law is broken; property tests and fuzz targets feed them.
 
-use crate::compile;
 use crate::diag::render::{Color, render_human, render_json, render_short};
-use crate::diag::{Code, Diagnostic};
+use crate::diag::{Code, Diagnostic, Severity};
+use crate::lower::lower;
 use crate::source::Source;
-use crate::syntax::{lex, parse, parse_in_chunks};
+use crate::syntax::{Parse, Runs, ast, lex, parse, parse_in_chunks};
+use crate::{Compilation, MAX_LISTED, compile, compile_in_chunks};
 
 /// Makes a source of a few bytes.
 fn source(bytes: &[u8]) -> Source {
@@ -41,6 +42,7 @@ pub fn assert_parse_is_stable(bytes: &[u8]) {
     for chunk_bytes in [1, 7, 64] {
         assert_eq!(parse_in_chunks(&source, chunk_bytes), whole, "parsed in chunks of {chunk_bytes}");
     }
+    assert_short_way_leads_to(&source, &whole.file);
     let mut n_commands = 0;
     let mut end = 0;
     for command in whole.file.commands() {
@@ -52,6 +54,20 @@ pub fn assert_parse_is_stable(bytes: &[u8]) {
     assert_eq!(whole.file.n_commands(), n_commands);
 }
 
+/// Checks that tokens and grammar make the same of every line as the short way for plain lines.
+fn assert_short_way_leads_to(source: &Source, short: &ast::File) {
+    let mut long = Parse::default();
+    for run in Runs::new(source).without_short_way() {
+        long.append(run);
+    }
+    assert_eq!(&long.file, short, "parsed without the short way");
+    // Equal numbers may still differ in the sign of a zero.
+    let bits = |file: &ast::File| -> Vec<u64> {
+        file.commands().flat_map(|command| command.numbers.iter().map(|number| number.to_bits())).collect()
+    };
+    assert_eq!(bits(&long.file), bits(short), "the bits of the numbers without the short way");
+}
+
 /// Checks that the scene compiles to diagnostics that are in order and lie in the text, that they can be rendered, and
 /// that a scene without errors makes a valid program.
 ///
@@ -61,6 +77,7 @@ pub fn assert_compiles_soundly(bytes: &[u8]) {
     let source = source(bytes);
     let compilation = compile(&source);
     let found = &compilation.diagnostics;
+    assert_stages_make(&source, &compilation);
     assert!(found.is_sorted_by_key(|diagnostic| diagnostic.primary.span.start), "out of order: {found:#?}");
     found.iter().for_each(|diagnostic| assert_is_sound(&source, diagnostic));
     let mut out = Vec::new();
@@ -75,6 +92,27 @@ pub fn assert_compiles_soundly(bytes: &[u8]) {
         let violations = crate::ir::validate(compilation.program).err();
         assert_eq!(violations, None, "the language let pass what the door refuses");
     }
+}
+
+/// Checks that the stages one by one, and in chunks of any size, make what they make together.
+fn assert_stages_make(source: &Source, compilation: &Compilation) {
+    let parse = parse(source);
+    let lowered = lower(source, &parse.file);
+    let mut found = parse.diagnostics;
+    found.extend(lowered.diagnostics);
+    found.sort_by_key(|diagnostic| diagnostic.primary.span.start);
+    for chunk_bytes in [1, 64] {
+        let in_chunks = compile_in_chunks(source, chunk_bytes);
+        assert_eq!(in_chunks.program, lowered.program, "compiled in chunks of {chunk_bytes}");
+        assert_eq!(in_chunks.diagnostics, compilation.diagnostics, "compiled in chunks of {chunk_bytes}");
+    }
+    assert_eq!(compilation.program, lowered.program, "compiled as a whole");
+    if found.len() <= MAX_LISTED {
+        assert_eq!(compilation.diagnostics, found, "compiled as a whole");
+    }
+    let n_unlisted: usize =
+        [Severity::Error, Severity::Warning].map(|severity| compilation.n_unlisted(severity)).iter().sum();
+    assert_eq!(compilation.diagnostics.len() + n_unlisted, found.len());
 }
 
 fn assert_is_sound(source: &Source, diagnostic: &Diagnostic) {

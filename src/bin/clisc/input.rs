@@ -1,13 +1,18 @@
 //! Reading scenes.
 
+use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
 use anyhow::Context;
-use clisc::source::Source;
+use clisc::source::{Source, SourceError};
+use rayon::prelude::*;
 
 /// What messages call standard input.
 const STDIN_NAME: &str = "<stdin>";
+
+/// From so many bytes on no source is made: there is no need to read on.
+const TOO_LARGE: u64 = u32::MAX as u64;
 
 /// Reads a scene file; `-` is standard input.
 ///
@@ -16,10 +21,48 @@ const STDIN_NAME: &str = "<stdin>";
 pub fn read(path: &Path) -> anyhow::Result<Source> {
     if path == Path::new("-") {
         let mut bytes = Vec::new();
-        io::stdin().lock().read_to_end(&mut bytes).context("cannot read standard input")?;
+        io::stdin().lock().take(TOO_LARGE).read_to_end(&mut bytes).context("cannot read standard input")?;
         return Ok(Source::from_bytes(STDIN_NAME, bytes)?);
     }
     let name = path.display();
-    let bytes = std::fs::read(path).with_context(|| format!("cannot read `{name}`"))?;
-    Source::from_bytes(name.to_string(), bytes).with_context(|| format!("cannot read `{name}`"))
+    let read = || anyhow::Ok(Source::from_bytes(name.to_string(), read_file(path)?)?);
+    read().with_context(|| format!("cannot read `{name}`"))
+}
+
+fn read_file(path: &Path) -> anyhow::Result<Vec<u8>> {
+    let file = File::open(path)?;
+    let n_bytes = file.metadata().map_or(0, |found| found.len());
+    if n_bytes >= TOO_LARGE {
+        let n_bytes = usize::try_from(n_bytes).unwrap_or(usize::MAX);
+        return Err(SourceError::TooLarge { n_bytes }.into());
+    }
+    if n_bytes > PIECE_BYTES as u64
+        && let Some(bytes) = read_in_pieces(&file, n_bytes)
+    {
+        return Ok(bytes);
+    }
+    let mut bytes = Vec::with_capacity(usize::try_from(n_bytes).unwrap_or(0));
+    file.take(TOO_LARGE).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+/// How much of a large file one thread reads at a time; most of the work is making room for it in memory.
+const PIECE_BYTES: usize = 1 << 20;
+
+/// Reads a large file on all cores; `None` when that is not possible or the file has another length than it said.
+#[cfg(unix)]
+fn read_in_pieces(file: &File, n_bytes: u64) -> Option<Vec<u8>> {
+    use std::os::unix::fs::FileExt;
+
+    // Room that is known to be zero is not touched before it is read into.
+    let mut bytes = vec![0; usize::try_from(n_bytes).ok()?];
+    let pieces = bytes.par_chunks_mut(PIECE_BYTES).enumerate();
+    pieces.try_for_each(|(i, piece)| file.read_exact_at(piece, (i * PIECE_BYTES) as u64)).ok()?;
+    let is_whole = matches!(file.read_at(&mut [0], n_bytes), Ok(0));
+    is_whole.then_some(bytes)
+}
+
+#[cfg(not(unix))]
+fn read_in_pieces(_: &File, _: u64) -> Option<Vec<u8>> {
+    None
 }

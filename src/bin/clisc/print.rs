@@ -5,6 +5,10 @@
 use std::io::{self, BufWriter, ErrorKind, IsTerminal, Write};
 
 use anyhow::Context;
+use clisc::Compilation;
+use clisc::diag::Severity;
+use clisc::diag::words::counted;
+use clisc::source::Source;
 
 /// Returns standard output, buffered, for results of any length; it has to be flushed.
 pub fn stdout() -> impl Write {
@@ -29,6 +33,15 @@ pub fn to_stdout(text: &str) -> anyhow::Result<()> {
 pub fn to_stderr(text: &str) {
     let mut stderr = io::stderr().lock();
     let _ = stderr.write_all(text.as_bytes()).and_then(|()| stderr.flush());
+}
+
+/// Says of a scene how much was found in it that is not listed, if there is any.
+pub fn unlisted_to_stderr(scene: &Source, compilation: &Compilation) {
+    let [errors, warnings] = [(Severity::Error, "error"), (Severity::Warning, "warning")]
+        .map(|(severity, noun)| counted(compilation.n_unlisted(severity), &format!("more {noun}")));
+    if compilation.diagnostics.len() < compilation.n_errors + compilation.n_warnings {
+        to_stderr(&format!("`{}` has {errors} and {warnings} that are not listed\n", scene.name()));
+    }
 }
 
 /// Tells whether text on standard output may be coloured: it is a terminal, and `NO_COLOR` is unset or empty.

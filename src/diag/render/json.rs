@@ -16,6 +16,7 @@ pub const VERSION: u32 = 1;
 #[derive(Debug)]
 pub struct JsonReport<W: Write> {
     out: W,
+    n_listed: usize,
     n_errors: usize,
     n_warnings: usize,
 }
@@ -27,7 +28,7 @@ impl<W: Write> JsonReport<W> {
     /// Those of `out`.
     pub fn begin(mut out: W) -> io::Result<Self> {
         write!(out, "{{\n  \"version\": {VERSION},\n  \"diagnostics\": [")?;
-        Ok(Self { out, n_errors: 0, n_warnings: 0 })
+        Ok(Self { out, n_listed: 0, n_errors: 0, n_warnings: 0 })
     }
 
     /// Writes the diagnostics of one source.
@@ -36,25 +37,33 @@ impl<W: Write> JsonReport<W> {
     /// Those of the writer.
     pub fn add(&mut self, source: &Source, diagnostics: &[Diagnostic]) -> io::Result<()> {
         for diagnostic in diagnostics {
-            let separator = if self.n_errors + self.n_warnings == 0 { "\n    " } else { ",\n    " };
+            let separator = if self.n_listed == 0 { "\n    " } else { ",\n    " };
             self.out.write_all(separator.as_bytes())?;
             serde_json::to_writer(&mut self.out, &JsonDiagnostic::new(source, diagnostic))?;
-            match diagnostic.severity() {
-                Severity::Error => self.n_errors += 1,
-                Severity::Warning => self.n_warnings += 1,
-            }
+            self.n_listed += 1;
+            self.count(diagnostic.severity(), 1);
         }
         Ok(())
     }
 
-    /// Writes the end of the document, with the counts, and gives the writer back.
+    /// Counts `n` more that were found and are not listed.
+    pub fn count(&mut self, severity: Severity, n: usize) {
+        match severity {
+            Severity::Error => self.n_errors += n,
+            Severity::Warning => self.n_warnings += n,
+        }
+    }
+
+    /// Writes the end of the document, with the counts of all that was found, and gives the writer back.
     ///
     /// # Errors
     /// Those of the writer.
     pub fn finish(mut self) -> io::Result<W> {
-        let Self { n_errors, n_warnings, .. } = self;
-        let close = if n_errors + n_warnings == 0 { "]" } else { "\n  ]" };
-        writeln!(self.out, "{close},\n  \"errors\": {n_errors},\n  \"warnings\": {n_warnings}\n}}")?;
+        let Self { n_listed, n_errors, n_warnings, .. } = self;
+        let n_unlisted = n_errors + n_warnings - n_listed;
+        let close = if n_listed == 0 { "]" } else { "\n  ]" };
+        writeln!(self.out, "{close},\n  \"errors\": {n_errors},\n  \"warnings\": {n_warnings},")?;
+        writeln!(self.out, "  \"unlisted\": {n_unlisted}\n}}")?;
         Ok(self.out)
     }
 }

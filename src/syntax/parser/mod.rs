@@ -10,7 +10,10 @@ mod grammar;
 mod names;
 mod numeral;
 mod path;
+mod plain;
 mod text;
+
+use std::ops::Range;
 
 use rayon::prelude::*;
 
@@ -19,12 +22,16 @@ use crate::source::{Source, Span};
 use crate::syntax::ast::{self, Shape};
 use crate::syntax::lexer::{Line, lex_line, lines};
 use crate::syntax::parser::errors::BadCommand;
+use crate::syntax::parser::plain::{PlainLine, PlainLines};
 use crate::syntax::parser::text::LoneReturns;
 use crate::syntax::spec::{self, Arguments, CommandKind, CommandSpec, MAX_NUMBERS};
 use crate::syntax::token::{Token, TokenKind};
 
-/// How much text one thread takes at a time. The tree depends on the text alone, not on this.
-const CHUNK_BYTES: usize = 1 << 20;
+/// How much text one thread takes at a time: its tree stays in the cache until it is lowered.
+const CHUNK_BYTES: usize = 1 << 16;
+
+/// How many chunks make a run.
+const CHUNKS_PER_RUN: usize = 32;
 
 /// A tree and what was found wrong on the way to it.
 #[derive(Debug, Default, PartialEq)]
@@ -33,6 +40,14 @@ pub struct Parse {
     pub file: ast::File,
     /// In the order of the text.
     pub diagnostics: Vec<Diagnostic>,
+}
+
+impl Parse {
+    /// Adds the lines that follow.
+    pub fn append(&mut self, later: Self) {
+        self.file.append(later.file);
+        self.diagnostics.extend(later.diagnostics);
+    }
 }
 
 /// Parses a scene. A line that is no command becomes a bad node and a diagnostic, and spoils no other line.
@@ -44,26 +59,124 @@ pub fn parse(source: &Source) -> Parse {
 /// Does the work of [`parse`] in chunks of about `chunk_bytes`; the result is the same for any size.
 #[must_use]
 pub fn parse_in_chunks(source: &Source, chunk_bytes: usize) -> Parse {
-    if let Some(diagnostic) = text::check_encoding(source) {
-        return unreadable(source, diagnostic);
+    let mut whole = Parse::default();
+    let mut runs = Runs::in_chunks(source, chunk_bytes);
+    for run in &mut runs {
+        whole.append(run);
     }
-    let chunks: Vec<_> = chunks(source.text(), chunk_bytes.max(1)).collect();
-    let chunks: Vec<_> = match chunks[..] {
-        [start] => vec![Chunk::parse(source, start)],
-        _ => chunks.into_par_iter().map(|span| Chunk::parse(source, span)).collect(),
-    };
-    let mut diagnostics = Vec::new();
-    let mut lone_returns = LoneReturns::default();
-    let mut parts = Vec::with_capacity(chunks.len());
-    for chunk in chunks {
-        diagnostics.extend(chunk.diagnostics);
-        lone_returns = lone_returns.and(chunk.lone_returns);
-        parts.push(chunk.part);
+    whole.diagnostics.extend(runs.finish());
+    whole.diagnostics.sort_by_key(|diagnostic| diagnostic.primary.span.start);
+    whole
+}
+
+/// Parses a scene a run of whole lines at a time, so that the tree of a large one need never be there as a whole.
+///
+/// The trees and diagnostics of the runs, one behind the other, and those of [`Runs::finish`] are those of [`parse`].
+#[derive(Debug)]
+pub struct Runs<'s> {
+    source: &'s Source,
+    chunk_bytes: usize,
+    /// Where the next run starts; none behind the last.
+    next: Option<usize>,
+    lone_returns: LoneReturns,
+    takes_short_way: bool,
+}
+
+impl<'s> Runs<'s> {
+    /// Begins at the start of the scene.
+    #[must_use]
+    pub fn new(source: &'s Source) -> Self {
+        Self::in_chunks(source, CHUNK_BYTES)
     }
-    text::check_bytes(source, &mut diagnostics);
-    diagnostics.extend(lone_returns.diagnose());
-    diagnostics.sort_by_key(|diagnostic| diagnostic.primary.span.start);
-    Parse { file: ast::File::new(parts), diagnostics }
+
+    /// Does the work of [`Runs::new`] in chunks of about `chunk_bytes`.
+    #[must_use]
+    pub fn in_chunks(source: &'s Source, chunk_bytes: usize) -> Self {
+        Self {
+            source,
+            chunk_bytes: chunk_bytes.max(1),
+            next: Some(0),
+            lone_returns: LoneReturns::default(),
+            takes_short_way: true,
+        }
+    }
+
+    /// Parses every line by way of tokens and grammar; the result is the same.
+    #[must_use]
+    pub fn without_short_way(self) -> Self {
+        Self { takes_short_way: false, ..self }
+    }
+
+    /// Tells whether the last run has been parsed.
+    #[must_use]
+    pub fn is_at_end(&self) -> bool {
+        self.next.is_none()
+    }
+
+    /// Reports what only the whole text shows, in order.
+    ///
+    /// # Panics
+    /// When a run has not been parsed.
+    #[must_use]
+    pub fn finish(self) -> Vec<Diagnostic> {
+        assert!(self.is_at_end(), "a run is left");
+        let mut diagnostics = Vec::new();
+        if text::check_encoding(self.source).is_none() {
+            text::check_bytes(self.source, &mut diagnostics);
+            diagnostics.extend(self.lone_returns.diagnose());
+        }
+        diagnostics
+    }
+
+    /// Cuts the next run behind newlines into spans of at least `chunk_bytes`, the last of all excepted.
+    fn next_chunks(&mut self) -> Vec<Span> {
+        let text = self.source.text().as_bytes();
+        let mut chunks = Vec::new();
+        while let Some(start) = self.next.filter(|_| chunks.len() < CHUNKS_PER_RUN) {
+            let least = (start + self.chunk_bytes - 1).min(text.len());
+            let newline = memchr::memchr(b'\n', &text[least..]);
+            let end = newline.map_or(text.len(), |newline| least + newline + 1);
+            self.next = (end < text.len()).then_some(end);
+            chunks.push(Span::new(start as u32, end as u32));
+        }
+        chunks
+    }
+}
+
+impl Iterator for Runs<'_> {
+    type Item = Parse;
+
+    fn next(&mut self) -> Option<Parse> {
+        if self.next == Some(0)
+            && let Some(diagnostic) = text::check_encoding(self.source)
+        {
+            self.next = None;
+            return Some(unreadable(self.source, diagnostic));
+        }
+        let (source, takes_short_way) = (self.source, self.takes_short_way);
+        let parse = |span: Span| {
+            let mut chunk = Chunk::new(source, span);
+            if takes_short_way {
+                chunk.parse()
+            } else {
+                chunk.parse_by_tokens()
+            }
+            chunk
+        };
+        let chunks = self.next_chunks();
+        let chunks: Vec<_> = match chunks[..] {
+            [] => return None,
+            [span] => vec![parse(span)],
+            _ => chunks.into_par_iter().map(parse).collect(),
+        };
+        let mut run = Parse::default();
+        for chunk in chunks {
+            run.diagnostics.extend(chunk.diagnostics);
+            run.file.push(chunk.part);
+            self.lone_returns = self.lone_returns.and(chunk.lone_returns);
+        }
+        Some(run)
+    }
 }
 
 /// Returns the places of the arguments of the command below `command`.
@@ -89,25 +202,16 @@ pub fn file_name(source: &Source, command: Span) -> Option<(&str, Span)> {
 fn unreadable(source: &Source, diagnostic: Diagnostic) -> Parse {
     let mut part = ast::Part::default();
     part.push(Span::new(0, source.text().len() as u32), Shape::Bad(Some(CommandKind::Write)), &[]);
-    Parse { file: ast::File::new(vec![part]), diagnostics: vec![diagnostic] }
-}
-
-/// Cuts `text` behind newlines into spans of at least `chunk_bytes`, the last excepted. There is always one.
-fn chunks(text: &str, chunk_bytes: usize) -> impl Iterator<Item = Span> {
-    let mut from = Some(0);
-    std::iter::from_fn(move || {
-        let start = from?;
-        let least = (start + chunk_bytes - 1).min(text.len());
-        let newline = memchr::memchr(b'\n', &text.as_bytes()[least..]);
-        let end = newline.map_or(text.len(), |newline| least + newline + 1);
-        from = (end < text.len()).then_some(end);
-        Some(Span::new(start as u32, end as u32))
-    })
+    let mut file = ast::File::default();
+    file.push(part);
+    Parse { file, diagnostics: vec![diagnostic] }
 }
 
 /// A run of lines and what has been made of them.
 struct Chunk<'s> {
     source: &'s Source,
+    /// The lines.
+    span: Span,
     part: ast::Part,
     diagnostics: Vec<Diagnostic>,
     lone_returns: LoneReturns,
@@ -118,20 +222,48 @@ struct Chunk<'s> {
 }
 
 impl<'s> Chunk<'s> {
-    fn parse(source: &'s Source, span: Span) -> Self {
-        let mut chunk = Self {
+    fn new(source: &'s Source, span: Span) -> Self {
+        Self {
             source,
-            part: ast::Part::default(),
+            span,
+            part: ast::Part::for_text(span.len()),
             diagnostics: Vec::new(),
             lone_returns: LoneReturns::default(),
             tokens: Vec::new(),
             foreign: Vec::new(),
-        };
-        for line in lines(source.slice(span), span.start) {
-            chunk.parse_line(&line);
         }
-        chunk.part.shrink_to_fit();
-        chunk
+    }
+
+    /// Parses each line the short way if it is plain, otherwise by way of tokens and grammar.
+    fn parse(&mut self) {
+        let Range { start, end } = self.span.range();
+        let mut lines = PlainLines::new(&self.source.text()[..end], start);
+        while lines.at() < end {
+            let start = lines.at();
+            match lines.read() {
+                Some(PlainLine::Empty) => {}
+                Some(PlainLine::Command { spec, span, numbers }) => {
+                    self.part.push(span, Shape::Whole(spec.kind), &numbers[..spec.numbers().len()]);
+                }
+                None => lines.resume_at(self.parse_line_at(start)),
+            }
+        }
+    }
+
+    /// Parses each line by way of tokens and grammar.
+    fn parse_by_tokens(&mut self) {
+        let Range { mut start, end } = self.span.range();
+        while start < end {
+            start = self.parse_line_at(start);
+        }
+    }
+
+    /// Parses the line that starts at `start` by way of tokens and grammar; returns where the next one starts.
+    fn parse_line_at(&mut self, start: usize) -> usize {
+        let rest = Span::new(start as u32, self.span.end);
+        let line = lines(self.source.slice(rest), rest.start).next().expect("a text has a line");
+        self.parse_line(&line);
+        line.end.map_or(rest.end, |end| end.span.end) as usize
     }
 
     fn parse_line(&mut self, line: &Line<'s>) {

@@ -6,9 +6,10 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Context;
+use clisc::Compilation;
+use clisc::diag::Severity;
 use clisc::diag::render::{Color, JsonReport, render_human, render_short};
 use clisc::diag::words::counted;
-use clisc::diag::{Diagnostic, Severity};
 use clisc::source::Source;
 
 use crate::args::{CheckArgs, CheckFormat};
@@ -36,8 +37,9 @@ fn check(path: &Path, printer: &mut Printer, tally: &mut Tally) -> anyhow::Resul
     match input::read(path) {
         Ok(source) => {
             let compilation = clisc::compile(&source);
-            tally.add(&compilation.diagnostics);
-            printer.print(&source, &compilation.diagnostics)?;
+            tally.add(&compilation);
+            printer.print(&source, &compilation)?;
+            print::unlisted_to_stderr(&source, &compilation);
         }
         Err(error) => tally.miss(&error),
     }
@@ -82,14 +84,10 @@ struct Tally {
 }
 
 impl Tally {
-    fn add(&mut self, diagnostics: &[Diagnostic]) {
+    fn add(&mut self, compilation: &Compilation) {
         self.n_scenes += 1;
-        for diagnostic in diagnostics {
-            match diagnostic.severity() {
-                Severity::Error => self.n_errors += 1,
-                Severity::Warning => self.n_warnings += 1,
-            }
-        }
+        self.n_errors += compilation.n_errors;
+        self.n_warnings += compilation.n_warnings;
     }
 
     /// Tells of a scene that could not be read.
@@ -135,12 +133,18 @@ impl Printer {
         })
     }
 
-    fn print(&mut self, source: &Source, diagnostics: &[Diagnostic]) -> anyhow::Result<()> {
+    fn print(&mut self, source: &Source, compilation: &Compilation) -> anyhow::Result<()> {
+        let diagnostics = &compilation.diagnostics;
         let mut out = print::stdout();
         let written = match self {
             Self::Human(color) => render_human(source, diagnostics, *color, &mut out),
             Self::Short => render_short(source, diagnostics, &mut out),
-            Self::Json(report) => report.add(source, diagnostics),
+            Self::Json(report) => {
+                for severity in [Severity::Error, Severity::Warning] {
+                    report.count(severity, compilation.n_unlisted(severity));
+                }
+                report.add(source, diagnostics)
+            }
         };
         written.and_then(|()| out.flush()).context(CANNOT_WRITE)
     }

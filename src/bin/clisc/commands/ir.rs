@@ -24,6 +24,8 @@ pub fn run(args: &IrArgs) -> anyhow::Result<ExitCode> {
     let mut stderr = print::stderr();
     // There is no place left to say that this failed.
     let _ = render_human(&source, &compilation.diagnostics, color, &mut stderr).and_then(|()| stderr.flush());
+    drop(stderr);
+    print::unlisted_to_stderr(&source, &compilation);
     let mut out = print::stdout();
     dump(args, &source, compilation, &mut out)?
         .and_then(|()| out.flush())

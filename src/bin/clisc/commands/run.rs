@@ -10,15 +10,13 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::Context;
-use clisc::Compilation;
 use clisc::diag::Diagnostic;
 use clisc::diag::render::{Color, render_human};
+use clisc::diag::words::counted;
 use clisc::exec::{CancellationToken, ExecError, Options, check_names, execute};
 use clisc::ir::{self, Command, Valid};
-use clisc::lower::lower;
 use clisc::plan::Settings;
 use clisc::source::Source;
-use clisc::syntax::parse;
 
 use self::reporter::Reporter;
 use self::stats::{SceneStats, StatsReport};
@@ -103,23 +101,21 @@ impl Session<'_> {
 
     /// Compiles a scene and prints what was found; `None` when it has errors.
     fn compile(&self, source: &Source, stats: &mut SceneStats) -> anyhow::Result<Option<Valid>> {
-        let start = Instant::now();
-        let parsed = parse(source);
-        stats.parse = start.elapsed();
-        let start = Instant::now();
-        let lowered = lower(source, &parsed.file);
-        let Compilation { program, diagnostics } = Compilation::of_stages(parsed.diagnostics, lowered);
-        stats.lower = start.elapsed();
-        self.print_diagnostics(source, &diagnostics)?;
-        let n_errors = diagnostics.iter().filter(|diagnostic| diagnostic.is_error()).count();
-        if n_errors > 0 {
-            let plural = if n_errors == 1 { "" } else { "s" };
-            print::to_stderr(&format!("`{}` has {n_errors} error{plural} and is not rendered\n", source.name()));
+        let epoch = Instant::now();
+        let compilation = clisc::compile_timed(source, &|| epoch.elapsed());
+        (stats.parse, stats.lower) = (compilation.times.parse, compilation.times.lower);
+        self.print_diagnostics(source, &compilation.diagnostics)?;
+        if compilation.has_errors() || !self.args.quiet {
+            print::unlisted_to_stderr(source, &compilation);
+        }
+        if compilation.has_errors() {
+            let errors = counted(compilation.n_errors, "error");
+            print::to_stderr(&format!("`{}` has {errors} and is not rendered\n", source.name()));
             stats.outcome = Outcome::SceneErrors;
             return Ok(None);
         }
         let start = Instant::now();
-        let valid = ir::validate(program);
+        let valid = ir::validate(compilation.program);
         stats.lower += start.elapsed();
         // The checks of the language leave nothing to find here.
         valid.map(Some).map_err(|violations| anyhow::anyhow!("a bug in clisc let pass: {}", violations[0]))
