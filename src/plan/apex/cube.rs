@@ -4,6 +4,8 @@
 //! sorted into grids ([`Grid`]), as [`Spot`]s. A query goes through the face of its largest coordinate, where both slopes
 //! are at most 1; its error may add a little, which faces overlap by ([`LIMIT`]).
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use crate::plan::apex::grid::{Axis, Grid, Query, Spot, cell};
@@ -28,7 +30,7 @@ const STRIPS_FROM: usize = 1 << 14;
 /// The six faces around a point.
 #[derive(Debug)]
 pub struct Cube {
-    faces: [Option<Face>; 6],
+    faces: [Face; 6],
     n_spheres: u32,
 }
 
@@ -36,6 +38,8 @@ pub struct Cube {
 #[derive(Debug)]
 struct Face {
     strips: Axis,
+    /// The range of the first axis.
+    width: [f64; 2],
     grids: Vec<Grid>,
 }
 
@@ -63,29 +67,19 @@ impl Frame {
 impl Cube {
     /// Sorts the objects of a scene into the grids around a point.
     pub fn new(scene: &Scene<'_>, apex: [f64; 3]) -> Self {
-        let n_spheres = scene.spheres.radius.len();
-        let n_objects = n_spheres + scene.cylinders.radius.len();
-        let chunks = (0..n_objects).into_par_iter().step_by(OBJECTS_PER_TASK);
-        let spots: Vec<_> = chunks
-            .map(|first| {
-                let mut faces = [const { Vec::new() }; 6];
-                for i in first..n_objects.min(first + OBJECTS_PER_TASK) {
-                    match i.checked_sub(n_spheres) {
-                        None => add_sphere(scene, apex, i, &mut faces),
-                        Some(cylinder_idx) => add_cylinder(scene, apex, cylinder_idx, i as u32, &mut faces),
-                    }
-                }
-                faces
-            })
+        let n_objects = scene.spheres.radius.len() + scene.cylinders.radius.len();
+        let chunk = |i: usize| i * OBJECTS_PER_TASK..n_objects.min((i + 1) * OBJECTS_PER_TASK);
+        let n_chunks = n_objects.div_ceil(OBJECTS_PER_TASK);
+        let chunks: Vec<_> = (0..n_chunks).into_par_iter().map(|i| Seen::new(scene, apex, chunk(i))).collect();
+        let mut faces: [Face; 6] = std::array::from_fn(|face| Face::new(&chunks, face));
+        let tasks: Vec<_> = (faces.iter().enumerate())
+            .flat_map(|(face, Face { strips, .. })| (0..strips.cells()).map(move |strip| (face, strip)))
             .collect();
-        let faces: Vec<_> = (0..6)
-            .into_par_iter()
-            .map(|face| {
-                let spots: Vec<Spot> = spots.iter().flat_map(|faces| faces[face].iter().copied()).collect();
-                (!spots.is_empty()).then(|| Face::new(&spots))
-            })
-            .collect();
-        Self { faces: faces.try_into().expect("six faces"), n_spheres: n_spheres as u32 }
+        let grids: Vec<_> = tasks.par_iter().map(|&(face, strip)| faces[face].sort(&chunks, face, strip)).collect();
+        for ((face, _), grid) in tasks.into_iter().zip(grids) {
+            faces[face].grids.push(grid);
+        }
+        Self { faces, n_spheres: scene.spheres.radius.len() as u32 }
     }
 
     /// Calls `visit` with each object that may have a point strictly between the apex and another point, until it answers
@@ -95,7 +89,7 @@ impl Cube {
     /// `to_point`: from the apex to the other point. `error`: how far each of its coordinates may be off.
     pub fn visit(&self, to_point: [f64; 3], error: f64, mut visit: impl FnMut(Object) -> bool) -> Option<bool> {
         let (face, query) = query(to_point, error)?;
-        let Some(face) = &self.faces[face] else { return Some(false) };
+        let face = &self.faces[face];
         let mut visit = |i: u32| {
             visit(match i.checked_sub(self.n_spheres) {
                 None => Object::Sphere(i),
@@ -187,26 +181,59 @@ fn spot(outline: &Outline, object: u32) -> Option<Spot> {
     })
 }
 
-impl Face {
-    fn new(spots: &[Spot]) -> Self {
-        let extremes = |k: usize| {
-            let low = spots.iter().fold(f64::INFINITY, |low, spot| low.min(f64::from(spot.low[k])));
-            let high = spots.iter().fold(f64::NEG_INFINITY, |high, spot| high.max(f64::from(spot.high[k])));
-            [low.max(-LIMIT), high.min(LIMIT)]
-        };
-        let [u, v] = [extremes(0), extremes(1)];
-        let n_strips = if spots.len() < STRIPS_FROM { 1 } else { 2 * rayon::current_num_threads() as u32 };
-        let strips = Axis::new(v, n_strips);
-        let grid = |strip: usize| {
-            let is_in = |spot: &&Spot| {
-                cell(strips.place(spot.low[1].into())) <= strip && strip <= cell(strips.place(spot.high[1].into()))
-            };
-            match n_strips {
-                1 => Grid::new(spots, [u, v]),
-                _ => Grid::new(&spots.iter().filter(is_in).copied().collect::<Vec<_>>(), [u, strips.range(strip)]),
+/// What some objects are to the faces.
+#[derive(Debug)]
+struct Seen {
+    spots: [Vec<Spot>; 6],
+    /// The least and the largest slopes of the spots of each face.
+    ranges: [[[f64; 2]; 2]; 6],
+}
+
+impl Seen {
+    fn new(scene: &Scene<'_>, apex: [f64; 3], objects: Range<usize>) -> Self {
+        let n_spheres = scene.spheres.radius.len();
+        let mut spots = [const { Vec::new() }; 6];
+        for i in objects {
+            match i.checked_sub(n_spheres) {
+                None => add_sphere(scene, apex, i, &mut spots),
+                Some(cylinder_idx) => add_cylinder(scene, apex, cylinder_idx, i as u32, &mut spots),
             }
+        }
+        let widen = |[low, high]: [f64; 2], spot: &Spot, k: usize| {
+            [low.min(spot.low[k].into()).max(-LIMIT), high.max(spot.high[k].into()).min(LIMIT)]
         };
-        Self { strips, grids: (0..n_strips as usize).into_par_iter().map(grid).collect() }
+        let range = |spots: &Vec<Spot>| {
+            spots.iter().fold([NOTHING; 2], |ranges, spot| [widen(ranges[0], spot, 0), widen(ranges[1], spot, 1)])
+        };
+        Self { ranges: spots.each_ref().map(range), spots }
+    }
+}
+
+/// A range that holds nothing.
+const NOTHING: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
+
+impl Face {
+    /// Cuts a face into strips for what is seen through it.
+    fn new(chunks: &[Seen], face: usize) -> Self {
+        let n_spots: usize = chunks.iter().map(|chunk| chunk.spots[face].len()).sum();
+        let range = |k: usize| {
+            let ranges = chunks.iter().map(|chunk| chunk.ranges[face][k]);
+            ranges.fold(NOTHING, |all, range| [all[0].min(range[0]), all[1].max(range[1])])
+        };
+        let (n_strips, [width, height]) = match n_spots {
+            0 => (1, [[0.0; 2]; 2]),
+            1..STRIPS_FROM => (1, [range(0), range(1)]),
+            _ => (2 * rayon::current_num_threads() as u32, [range(0), range(1)]),
+        };
+        Self { strips: Axis::new(height, n_strips), width, grids: Vec::new() }
+    }
+
+    /// Sorts what is seen through a strip.
+    fn sort(&self, chunks: &[Seen], face: usize, strip: usize) -> Grid {
+        let place = |slope: f32| cell(self.strips.place(slope.into()));
+        let is_in = |spot: &&Spot| place(spot.low[1]) <= strip && strip <= place(spot.high[1]);
+        let spots: Vec<_> = chunks.iter().flat_map(|chunk| chunk.spots[face].iter().filter(is_in)).copied().collect();
+        Grid::new(&spots, [self.width, self.strips.range(strip)])
     }
 }
 

@@ -8,6 +8,7 @@
 //! numbers. Both are monotone: an outline from a to b holds a query from c to d when a ≤ d and c ≤ b, and then the same is
 //! true of their places, whatever was rounded on the way. Likewise for depths, of which the leading bits are kept.
 
+use std::mem;
 use std::ops::Range;
 
 /// Bits of a place within its cell.
@@ -27,6 +28,9 @@ const MAX_CELLS: usize = 16;
 
 /// How many records an outline may become on the average.
 const MAX_GROWTH: f64 = 2.5;
+
+/// Outlines that are looked at to choose the cells.
+const N_SAMPLES: usize = 1024;
 
 /// Grids within grids.
 const MAX_DEPTH: u32 = 6;
@@ -81,11 +85,12 @@ impl Axis {
         ((slope - self.low) * self.places_per_slope).clamp(0.0, self.last) as u32
     }
 
-    fn cells(&self) -> usize {
+    /// Returns the number of cells.
+    pub fn cells(&self) -> usize {
         (self.last as usize >> SHARE_BITS) + 1
     }
 
-    /// Returns the range of slopes of a cell, to a rounding, which may be all that it is.
+    /// Returns the range of slopes of a cell, to a rounding; of the only cell of a range that is one number that number.
     pub fn range(&self, cell: usize) -> [f64; 2] {
         if self.places_per_slope == 0.0 {
             return [self.low; 2];
@@ -148,6 +153,12 @@ struct Cell {
 impl Cell {
     const GRID: u32 = u32::MAX;
 
+    /// Makes the list one longer and returns the place of its new end.
+    fn push(&mut self) -> usize {
+        self.len += 1;
+        (self.start + self.len - 1) as usize
+    }
+
     fn records(self) -> Range<usize> {
         self.start as usize..self.start as usize + self.len as usize
     }
@@ -178,6 +189,9 @@ impl Grid {
     /// Sorts outlines into a grid over their window.
     pub fn new(spots: &[Spot], window: [[f64; 2]; 2]) -> Self {
         let mut grid = Self::default();
+        if spots.is_empty() {
+            return grid;
+        }
         grid.add_node(spots, window, 0);
         grid
     }
@@ -185,7 +199,7 @@ impl Grid {
     /// Calls `visit` with each object whose outline holds the query until it answers `true`, and tells whether it did. An
     /// object may come several times.
     pub fn visit(&self, query: &Query, visit: &mut impl FnMut(u32) -> bool) -> bool {
-        self.visit_node(0, query, visit)
+        !self.nodes.is_empty() && self.visit_node(0, query, visit)
     }
 
     fn visit_node(&self, node_idx: usize, query: &Query, visit: &mut impl FnMut(u32) -> bool) -> bool {
@@ -230,50 +244,95 @@ impl Grid {
     fn add_node(&mut self, spots: &[Spot], window: [[f64; 2]; 2], depth: u32) -> usize {
         let axes = cut_window(spots, window);
         let n_cells = axes.map(|axis| axis.cells());
-        let node_idx = self.nodes.len();
-        let first_cell = self.cells.len();
         let large_shift = n_cells[0].max(n_cells[1]).next_power_of_two().trailing_zeros();
-        self.nodes.push(Node { axes, first_cell, large: Cell::default(), large_shift });
+        let (node_idx, first_cell) = (self.nodes.len(), self.cells.len());
         self.cells.resize(first_cell + n_cells[0] * n_cells[1], Cell::default());
+        let large = self.make_room(spots, &axes, first_cell, depth);
+        self.nodes.push(Node { axes, first_cell, large, large_shift });
 
-        let sorted = Sorted::new(spots, &axes);
-        self.nodes[node_idx].large = self.add_list(spots, &sorted.large, |spot| {
-            let [low, high] = places(spot, &axes).map(|places| places.map(|place| place >> large_shift));
-            (low, high)
-        });
-        for (i, list) in sorted.lists().enumerate() {
-            let at = [i % n_cells[0], i / n_cells[0]];
-            self.cells[first_cell + i] = if list.len() > CROWD && depth < MAX_DEPTH && sorted.starts.len() > 2 {
-                let crowd: Vec<_> = list.iter().map(|&i| spots[i as usize]).collect();
-                let window = std::array::from_fn(|k| axes[k].range(at[k]));
-                Cell { start: self.add_node(&crowd, window, depth + 1) as u32, len: Cell::GRID }
-            } else {
-                self.add_list(spots, list, |spot| {
-                    let [low, high] = places(spot, &axes);
-                    shares(at, low, high)
-                })
+        let mut crowds: Vec<Vec<Spot>> = Vec::new();
+        self.nodes[node_idx].large.len = 0;
+        for spot in spots {
+            let [low, high] = places(spot, &axes);
+            let Some(cells) = blocks(low, high) else {
+                let [low, high] = [low, high].map(|places| places.map(|place| place >> large_shift));
+                let list = &mut self.nodes[node_idx].large;
+                let at = list.push();
+                self.put(at, record::new(low, high, spot.near), spot.object);
+                continue;
             };
+            for at in cells {
+                let found = &mut self.cells[first_cell + at[1] * n_cells[0] + at[0]];
+                if found.len == Cell::GRID {
+                    let crowd_idx = found.start as usize;
+                    crowds.resize_with(crowds.len().max(crowd_idx + 1), Vec::new);
+                    crowds[crowd_idx].push(*spot);
+                } else {
+                    let (from, to) = shares(at, low, high);
+                    let at = found.push();
+                    self.put(at, record::new(from, to, spot.near), spot.object);
+                }
+            }
         }
+        self.add_crowds(node_idx, &crowds, depth);
         node_idx
     }
 
-    /// Adds a list of records, nearest first.
-    fn add_list(&mut self, spots: &[Spot], list: &[u32], shares: impl Fn(&Spot) -> ([u32; 2], [u32; 2])) -> Cell {
-        let start = self.records.len();
-        let mut sorted: Vec<_> = (list.iter().map(|&i| &spots[i as usize]))
-            .map(|spot| {
-                let (low, high) = shares(spot);
-                (record::new(low, high, spot.near), spot.object)
-            })
-            .collect();
-        sorted.sort_unstable();
-        self.records.extend(sorted.iter().map(|(record, _)| record));
-        self.objects.extend(sorted.iter().map(|(_, object)| object));
-        Cell { start: u32::try_from(start).expect("fewer than 2^32 records"), len: list.len() as u32 }
+    /// Makes room for the records of a node, by counting, and numbers the cells that are to be grids; returns where those
+    /// lie that are kept apart.
+    fn make_room(&mut self, spots: &[Spot], axes: &[Axis; 2], first_cell: usize, depth: u32) -> Cell {
+        let n_columns = axes[0].cells();
+        let cells = &mut self.cells[first_cell..];
+        let mut large = Cell { start: self.records.len() as u32, len: 0 };
+        for spot in spots {
+            let [low, high] = places(spot, axes);
+            match blocks(low, high) {
+                None => large.len += 1,
+                Some(blocks) => blocks.for_each(|[column, row]| cells[row * n_columns + column].len += 1),
+            }
+        }
+        let may_nest = depth < MAX_DEPTH && cells.len() > 1;
+        let mut n_crowds = 0;
+        let mut n_records = large.start as usize + large.len as usize;
+        for cell in cells {
+            if may_nest && cell.len as usize > CROWD {
+                *cell = Cell { start: n_crowds, len: Cell::GRID };
+                n_crowds += 1;
+            } else {
+                cell.start = u32::try_from(n_records).expect("fewer than 2^32 records");
+                n_records += mem::take(&mut cell.len) as usize;
+            }
+        }
+        self.records.resize(n_records, 0);
+        self.objects.resize(n_records, 0);
+        large
+    }
+
+    fn put(&mut self, at: usize, record: u64, object: u32) {
+        self.records[at] = record;
+        self.objects[at] = object;
+    }
+
+    /// Adds the grids of the crowded cells of a node.
+    fn add_crowds(&mut self, node_idx: usize, crowds: &[Vec<Spot>], depth: u32) {
+        if crowds.is_empty() {
+            return;
+        }
+        let Node { axes, first_cell, .. } = self.nodes[node_idx];
+        let n_columns = axes[0].cells();
+        for i in 0..n_columns * axes[1].cells() {
+            if self.cells[first_cell + i].len == Cell::GRID {
+                let at = [i % n_columns, i / n_columns];
+                let window = std::array::from_fn(|k| axes[k].range(at[k]));
+                let crowd = &crowds[self.cells[first_cell + i].start as usize];
+                self.cells[first_cell + i].start = self.add_node(crowd, window, depth + 1) as u32;
+            }
+        }
     }
 }
 
 /// Returns the first and the last place of an outline.
+#[inline]
 fn places(spot: &Spot, axes: &[Axis; 2]) -> [[u32; 2]; 2] {
     [spot.low, spot.high].map(|slopes| std::array::from_fn(|k| axes[k].place(f64::from(slopes[k]))))
 }
@@ -285,19 +344,29 @@ fn shares(at: [usize; 2], low: [u32; 2], high: [u32; 2]) -> ([u32; 2], [u32; 2])
     (std::array::from_fn(|k| share(k, low[k], 0)), std::array::from_fn(|k| share(k, high[k], LAST_SHARE)))
 }
 
-/// Chooses the cells of a window so that a cell has about as many records as it should, and the outlines do not become
-/// too many records.
+/// Returns the cells between two places; `None` when they are many.
+#[inline]
+fn blocks(low: [u32; 2], high: [u32; 2]) -> Option<impl Iterator<Item = [usize; 2]> + use<>> {
+    let [low, high] = [low, high].map(|places| places.map(cell));
+    let n = (high[0] - low[0] + 1) * (high[1] - low[1] + 1);
+    (n <= MAX_CELLS)
+        .then(|| (low[1]..=high[1]).flat_map(move |row| (low[0]..=high[0]).map(move |column| [column, row])))
+}
+
+/// Chooses the cells of a window so that a cell has about as many records as it should, and the outlines, of which some
+/// are looked at, do not become too many records.
 fn cut_window(spots: &[Spot], window: [[f64; 2]; 2]) -> [Axis; 2] {
     debug_assert!(window.as_flattened().iter().all(|end| end.is_finite()));
     let [width, height] = window.map(|[low, high]| high - low);
     let n_cells = (spots.len() / PER_CELL).max(1) as f64;
     let mut side = libm::sqrt(width * height / n_cells).max(width.max(height) / n_cells.min(MAX_SIDE));
+    let samples = || spots.iter().step_by(spots.len() / N_SAMPLES + 1);
     loop {
         let n = |extent: f64| if side > 0.0 { (extent / side).ceil().clamp(1.0, MAX_SIDE) as u32 } else { 1 };
         let counts = [n(width), n(height)];
         let axes = [Axis::new(window[0], counts[0]), Axis::new(window[1], counts[1])];
-        let n_records: usize = spots.iter().map(|spot| covered(&places(spot, &axes))).sum();
-        if counts == [1, 1] || n_records as f64 <= MAX_GROWTH * spots.len() as f64 {
+        let n_records: usize = samples().map(|spot| covered(places(spot, &axes))).sum();
+        if counts == [1, 1] || n_records as f64 <= MAX_GROWTH * samples().len() as f64 {
             return axes;
         }
         side *= 1.5;
@@ -305,56 +374,8 @@ fn cut_window(spots: &[Spot], window: [[f64; 2]; 2]) -> [Axis; 2] {
 }
 
 /// Returns how many cells an outline is listed in; one that is kept apart is listed once.
-fn covered([low, high]: &[[u32; 2]; 2]) -> usize {
-    let n: usize = (0..2).map(|k| cell(high[k]) - cell(low[k]) + 1).product();
-    if n > MAX_CELLS { 1 } else { n }
-}
-
-/// The outlines of each cell, by counting.
-struct Sorted {
-    /// Where the list of each cell starts, and where the last ends.
-    starts: Vec<u32>,
-    indices: Vec<u32>,
-    large: Vec<u32>,
-}
-
-impl Sorted {
-    fn new(spots: &[Spot], axes: &[Axis; 2]) -> Self {
-        let n_columns = axes[0].cells();
-        let n_cells = n_columns * axes[1].cells();
-        let (mut large, mut starts) = (Vec::new(), vec![0; n_cells + 2]);
-        for (i, spot) in (0..).zip(spots) {
-            match blocks(spot, axes) {
-                None => large.push(i),
-                Some(cells) => cells.for_each(|[column, row]| starts[row * n_columns + column + 2] += 1),
-            }
-        }
-        for i in 2..starts.len() {
-            starts[i] += starts[i - 1];
-        }
-        let mut indices = vec![0; starts[n_cells + 1] as usize];
-        for (i, spot) in (0..).zip(spots) {
-            for [column, row] in blocks(spot, axes).into_iter().flatten() {
-                let next = &mut starts[row * n_columns + column + 1];
-                indices[*next as usize] = i;
-                *next += 1;
-            }
-        }
-        starts.pop();
-        Self { starts, indices, large }
-    }
-
-    fn lists(&self) -> impl Iterator<Item = &[u32]> {
-        self.starts.windows(2).map(|ends| &self.indices[ends[0] as usize..ends[1] as usize])
-    }
-}
-
-/// Returns the cells of an outline; `None` when they are many.
-fn blocks(spot: &Spot, axes: &[Axis; 2]) -> Option<impl Iterator<Item = [usize; 2]> + use<>> {
-    let [low, high] = places(spot, axes).map(|places| places.map(cell));
-    let n = (high[0] - low[0] + 1) * (high[1] - low[1] + 1);
-    (n <= MAX_CELLS)
-        .then(|| (low[1]..=high[1]).flat_map(move |row| (low[0]..=high[0]).map(move |column| [column, row])))
+fn covered([low, high]: [[u32; 2]; 2]) -> usize {
+    blocks(low, high).map_or(1, Iterator::count)
 }
 
 #[cfg(test)]
@@ -382,7 +403,7 @@ mod tests {
             let spots = random_spots(&mut stream, n);
             let grid = Grid::new(&spots, [[-0.2, 0.8]; 2]);
             let n_listed = grid.records.len();
-            assert!(n_listed < 8 * n, "{n_listed} records of {n}");
+            assert!(n_listed < 10 * n, "{n_listed} records of {n}");
             for _ in 0..2000 {
                 // At a corner of an outline, as often as not.
                 let near = spots[stream.below(n)];
