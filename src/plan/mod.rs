@@ -11,6 +11,7 @@ mod apex;
 mod bodies;
 mod bounces;
 mod candidates;
+mod curve;
 mod frustum;
 mod objects;
 mod passes;
@@ -78,6 +79,10 @@ pub fn plan<'p>(view: SceneView<'p>, settings: &Settings) -> Plan<'p> {
     let mut scene = Scene::new(view, settings.part);
     let mut report = Report::new(&view, &scene);
     let known = analyse(&mut scene, view.fov_deg(), settings, &mut report);
+    let search = Search::new(&scene);
+    if search == Search::Structures && known.is_none() {
+        scene.sort_by_place();
+    }
     let n_stored = if scene.surfaces.len() <= MAX_STORED_TERMS { scene.surfaces.len() } else { 0 };
     let terms: Vec<_> =
         scene.surfaces[..n_stored].iter().map(|surface| Terms::new(surface, &scene.lights, settings)).collect();
@@ -88,7 +93,6 @@ pub fn plan<'p>(view: SceneView<'p>, settings: &Settings) -> Plan<'p> {
         Some(known) => ObjectLists::of_all(&scene, |i| known.roles.mirrored[i]),
         None => everything.clone(),
     };
-    let search = Search::new(&scene);
     Plan {
         search,
         around_lights: AroundLights::new(&scene, search, settings),

@@ -3,9 +3,11 @@
 use std::borrow::Cow;
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use crate::ir::{self, EquationId, SceneView};
 use crate::plan::bodies::Solid;
+use crate::plan::curve;
 use crate::plan::{Object, Part};
 
 /// Spheres, coordinate by coordinate.
@@ -131,6 +133,22 @@ impl<'p> Scene<'p> {
         retain_at(self.cap_equations.to_mut(), keep);
     }
 
+    /// Sorts the spheres, and the cylinders, so that neighbours in the scene are neighbours in space, and so in memory.
+    pub(super) fn sort_by_place(&mut self) {
+        let SphereLanes { x, y, z, radius } = &mut self.spheres;
+        let order = curve::order(x.len(), |i| [x[i], y[i], z[i]]);
+        [x, y, z, radius].into_iter().for_each(|lane| permute(lane, &order));
+        permute(&mut self.sphere_primitives, &order);
+        permute(self.sphere_equations.to_mut(), &order);
+
+        let CylinderLanes { x, z, radius, y_min, y_max } = &mut self.cylinders;
+        let order = curve::order(x.len(), |i| [x[i], 0.5 * y_min[i] + 0.5 * y_max[i], z[i]]);
+        [x, z, radius, y_min, y_max].into_iter().for_each(|lane| permute(lane, &order));
+        permute(&mut self.cylinder_primitives, &order);
+        permute(self.wall_equations.to_mut(), &order);
+        permute(self.cap_equations.to_mut(), &order);
+    }
+
     /// Returns the number of spheres and cylinders.
     #[must_use]
     pub fn n_objects(&self) -> usize {
@@ -166,6 +184,11 @@ impl<'p> Scene<'p> {
     pub fn surface(&self, primitive: Primitive) -> &'p ir::Surface {
         &self.surfaces[primitive.surface.index()]
     }
+}
+
+/// Puts elements in the order of their places.
+fn permute<T: Copy + Send + Sync>(items: &mut Vec<T>, order: &[u32]) {
+    *items = order.par_iter().with_min_len(4096).map(|&i| items[i as usize]).collect();
 }
 
 /// Keeps the elements at the places that `keep` names.

@@ -1,8 +1,8 @@
 //! A tree of boxes: what a ray from anywhere may meet.
 //!
 //! # Method
-//! Objects are sorted along a curve that fills space (Morton's), each eight in a row make a group with a box about each,
-//! each eight groups in a row a group of the next level, up to one. No node needs a pointer: child k of group g is group
+//! Objects stand in the order of the scene, which is that of a curve that fills space (`curve`). Each eight in a row make a
+//! group with a box about each, each eight groups in a row a group of the next level, up to one. No node needs a pointer: child k of group g is group
 //! 8·g + k of the level below. Objects of different sizes stand in different trees, so that large ones do not blow up the
 //! boxes of small ones; giants, and sizes that few have, stand in none and are visited always.
 //!
@@ -21,10 +21,10 @@
 //! which few rays are reflected.
 
 mod boxes;
-mod morton;
 
 use rayon::prelude::*;
 
+use crate::plan::curve;
 use crate::plan::tree::boxes::{Beam, Boxes, LANES};
 use crate::plan::{Object, Scene};
 
@@ -39,6 +39,9 @@ const MIN_OBJECTS: usize = 2 * LANES;
 
 /// Sizes below 2⁻³⁰ of the largest are in one tree.
 const SMALLEST: i32 = -30;
+
+/// Fewer objects than this may not stand in the order of the curve in their scene, and are sorted here.
+const SORTED_FROM: usize = 1024;
 
 /// Objects that a thread takes at a time.
 const OBJECTS_PER_TASK: usize = 4096;
@@ -133,8 +136,11 @@ impl Forest {
 }
 
 impl Tree {
-    fn new(objects: Vec<u32>, bounds_of: impl Fn(u32) -> Bounds + Send + Sync) -> Self {
-        let objects = morton::sorted(objects, &bounds_of);
+    fn new(mut objects: Vec<u32>, bounds_of: impl Fn(u32) -> Bounds + Send + Sync) -> Self {
+        if objects.len() < SORTED_FROM {
+            let low = |i: usize| bounds_of(objects[i])[0].map(f64::from);
+            objects = curve::order(objects.len(), low).into_iter().map(|i| objects[i as usize]).collect();
+        }
         let leaves = objects.par_chunks(LANES).with_min_len(OBJECTS_PER_TASK / LANES);
         let mut levels: Vec<Vec<Boxes>> =
             vec![leaves.map(|group| Boxes::new(group.iter().map(|&i| bounds_of(i)))).collect()];
