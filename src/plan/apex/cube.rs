@@ -135,14 +135,16 @@ fn add_sphere(scene: &Scene<'_>, apex: [f64; 3], i: usize, faces: &mut [Vec<Spot
     // The subtraction may have moved the centre; a sphere that is larger by as much holds the exact one.
     let moved = ROUNDOFF * center.map(f64::abs).iter().sum::<f64>();
     let radius = (spheres.radius[i] + 2.0 * moved) * (1.0 + 4.0 * ROUNDOFF);
-    for (face, spots) in faces.iter_mut().enumerate() {
-        let local = Frame::of_face(face).look(center);
-        let [u, v, ahead] = local;
-        // Beyond the plane slope = LIMIT, from which the centre is this far times √2.
-        if u.abs().max(v.abs()) - LIMIT * ahead > 1.5 * radius {
-            continue;
+    for axis in 0..3 {
+        let [u, v, ahead] = Frame::of_face(2 * axis).look(center);
+        let across = u.abs().max(v.abs());
+        for (face, ahead) in [(2 * axis, ahead), (2 * axis + 1, -ahead)] {
+            // Beyond the plane slope = LIMIT, from which the centre is this far times √2.
+            if across - LIMIT * ahead <= 1.5 * radius {
+                let outline = Outline::of_sphere([u, v, ahead], radius);
+                faces[face].extend(outline.and_then(|outline| spot(&outline, i as u32)));
+            }
         }
-        spots.extend(Outline::of_sphere(local, radius).and_then(|outline| spot(&outline, i as u32)));
     }
 }
 
