@@ -18,6 +18,7 @@
 
 use crate::plan::Object;
 use crate::trace::kernels::{Lanes, Mask};
+use crate::trace::wide::TILE_PIXELS;
 use crate::trace::wide::bounds::{Bounds, Face, FaceKind, MAX_NORMAL_ERROR, MIN_CAP_COSINE, MIN_COSINE, Terms, U};
 use crate::trace::wide::eye::{MAX_LANES, Nearest};
 use crate::trace::wide::shade::{Colors, Points, dot};
@@ -48,18 +49,21 @@ pub(super) struct Rays<L: Lanes> {
 /// How many numbers there are for each ray.
 const N_NUMBERS: usize = 18;
 
+/// For how many rays there is room: packets are written and read as a whole, whatever number of rays is in them.
+const CAPACITY: usize = TILE_PIXELS + 2 * MAX_LANES;
+
 /// Reflected rays that wait to be traced, number by number.
 #[derive(Clone, Debug)]
 pub(super) struct Queue {
     len: usize,
-    numbers: [Vec<f64>; N_NUMBERS],
+    numbers: Box<[[f64; CAPACITY]; N_NUMBERS]>,
 }
 
 impl Queue {
-    /// Makes a queue for as many rays.
-    pub fn new(capacity: usize) -> Self {
-        // Packets are written and read as a whole, whatever number of rays is in them.
-        Self { len: 0, numbers: std::array::from_fn(|_| vec![0.0; capacity + 2 * MAX_LANES]) }
+    /// Makes an empty queue.
+    pub fn new() -> Self {
+        let numbers = vec![[0.0; CAPACITY]; N_NUMBERS].into_boxed_slice();
+        Self { len: 0, numbers: numbers.try_into().expect("as many as were made") }
     }
 
     /// Returns how many rays there are.
@@ -97,8 +101,8 @@ impl Queue {
             rays.error,
             rays.pixel,
         ];
-        for (lanes, to) in numbers.into_iter().zip(&mut self.numbers) {
-            lanes.store_packed(mask, &mut to[self.len..]);
+        for k in 0..N_NUMBERS {
+            numbers[k].store_packed(mask, &mut self.numbers[k][self.len..]);
         }
         self.len += mask.bits().count_ones() as usize;
     }
@@ -107,8 +111,8 @@ impl Queue {
     #[inline(always)]
     pub fn packet<L: Lanes>(&self, first: usize) -> (Rays<L>, L::Mask) {
         let mut numbers = [L::splat(0.0); N_NUMBERS];
-        for (lanes, from) in numbers.iter_mut().zip(&self.numbers) {
-            *lanes = L::load(&from[first..]);
+        for k in 0..N_NUMBERS {
+            numbers[k] = L::load(&self.numbers[k][first..]);
         }
         let [ox, oy, oz, dx, dy, dz, origin_error, dir_error, leaving, ar, ag, ab, hr, hg, hb, weight, error, pixel] =
             numbers;
@@ -368,9 +372,9 @@ pub(super) fn compose<L: Lanes>(rays: &Rays<L>, color: [L; 3], error: L, n_level
     let (zero, one) = (L::splat(0.0), L::splat(1.0));
     let mut channels = color;
     let mut largest = one;
-    for (channel, (sum, ceiling)) in channels.iter_mut().zip(rays.sum.into_iter().zip(rays.ceiling)) {
-        *channel = (sum + rays.weight * channel.min(one).max(zero)).min(ceiling);
-        largest = largest.max(sum + rays.weight);
+    for k in 0..3 {
+        channels[k] = (rays.sum[k] + rays.weight * color[k].min(one).max(zero)).min(rays.ceiling[k]);
+        largest = largest.max(rays.sum[k] + rays.weight);
     }
     let rounding = largest * L::splat(8.0 * U * f64::from(n_levels + 2));
     (channels, rays.error + rays.weight * error + rounding)

@@ -109,8 +109,6 @@ impl Wide {
 
     /// Makes what a thread needs.
     pub fn scratch(&self) -> Scratch {
-        let has_mirrors = self.bounds.terms.iter().any(|terms| terms.reflectance > 0.0);
-        let capacity = if has_mirrors { TILE_PIXELS } else { 0 };
         Scratch {
             pixels: vec![0; TILE_PIXELS],
             slow: vec![0; TILE_PIXELS / 8],
@@ -118,8 +116,8 @@ impl Wide {
             hits: Vec::new(),
             rows: Vec::new(),
             occluders: vec![None; self.bounds.faces.len()],
-            waiting: Queue::new(capacity),
-            next: Queue::new(capacity),
+            waiting: Queue::new(),
+            next: Queue::new(),
             counts: Counts::default(),
         }
     }
@@ -241,8 +239,9 @@ impl TileJob<'_> {
                 let a_wall = dx * dx + L::splat(1.0);
                 let rays = EyeRays { dx, a_wall, a: a_wall + L::splat(dy * dy), dy };
                 let mut nearest = Nearest::nothing();
-                for (&i, row) in among.spheres.iter().zip(&self.scratch.rows) {
-                    eye::meet_sphere(&mut nearest, bounds, &rays, &bounds.spheres[i as usize], row);
+                for k in 0..among.spheres.len() {
+                    let sphere = &bounds.spheres[among.spheres[k] as usize];
+                    eye::meet_sphere(&mut nearest, bounds, &rays, sphere, &self.scratch.rows[k]);
                 }
                 for &i in among.cylinders {
                     eye::meet_cylinder(&mut nearest, bounds, &rays, &bounds.cylinders[i as usize]);
@@ -379,7 +378,7 @@ impl TileJob<'_> {
         let sure = active & !nearest.doubt;
         let met = sure & nearest.met();
         let zero = L::splat(0.0);
-        self.finish(rays, self.plan.scene.background.to_array().map(L::splat), zero, sure & !met, level);
+        self.finish(rays, shade::splat_each(self.plan.scene.background.to_array()), zero, sure & !met, level);
         if level > self.plan.settings.max_level {
             self.finish(rays, [zero; 3], zero, met, level);
             return;

@@ -63,12 +63,18 @@ pub(super) fn dot<L: Lanes>(a: [L; 3], b: [L; 3]) -> L {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
+/// Makes every lane the same vector or colour.
+#[inline(always)]
+pub(super) fn splat_each<L: Lanes>([x, y, z]: [f64; 3]) -> [L; 3] {
+    [L::splat(x), L::splat(y), L::splat(z)]
+}
+
 /// Shades a packet of hits without their reflections.
 #[inline(always)]
 pub(super) fn shade<L: Lanes>(bounds: &Bounds, terms: &Terms, occluders: &LightOccluders, at: &Points<L>) -> Colors<L> {
     let none = L::Mask::from_bits(0);
     let zero = L::splat(0.0);
-    let mut colors = Colors { color: terms.ambient.map(L::splat), error: zero, doubt: none, shadow_rays: 0 };
+    let mut colors = Colors { color: splat_each(terms.ambient), error: zero, doubt: none, shadow_rays: 0 };
     if !terms.has_diffuse && !terms.has_specular {
         return colors;
     }
@@ -76,7 +82,8 @@ pub(super) fn shade<L: Lanes>(bounds: &Bounds, terms: &Terms, occluders: &LightO
     let (half, one) = (L::splat(0.5), L::splat(1.0));
     let normal_slack = at.normal_error + L::splat(8.0 * U);
     let point_slack = at.point_error * L::splat(1026.0);
-    for (light_idx, (light, light_terms)) in bounds.lights.iter().zip(&terms.lights).enumerate() {
+    for light_idx in 0..bounds.lights.len().min(terms.lights.len()) {
+        let (light, light_terms) = (&bounds.lights[light_idx], &terms.lights[light_idx]);
         let w: [L; 3] = [
             at.point[0] - L::splat(light.position[0]),
             at.point[1] - L::splat(light.position[1]),
@@ -187,17 +194,24 @@ fn raise_slice(squares: &mut [f64], exponent: f64, bits: u32) {
 /// `error`: of each channel.
 #[inline(always)]
 pub(super) fn quantise<L: Lanes>(color: [L; 3], error: L) -> (L, L::Mask) {
+    let room = L::splat(0.5) - (error * L::splat(255.5) + L::splat(BYTE_ROUNDING));
+    let (red, red_is_sure) = quantise_channel(color[0], error, room);
+    let (green, green_is_sure) = quantise_channel(color[1], error, room);
+    let (blue, blue_is_sure) = quantise_channel(color[2], error, room);
+    let packed = red + green * L::splat(256.0) + blue * L::splat(65536.0);
+    (packed, red_is_sure & green_is_sure & blue_is_sure)
+}
+
+/// Returns the byte of a channel, and the lanes in which it is proved.
+///
+/// `room`: how far from one half the fraction may be.
+#[inline(always)]
+fn quantise_channel<L: Lanes>(channel: L, error: L, room: L) -> (L, L::Mask) {
     let (zero, half, one) = (L::splat(0.0), L::splat(0.5), L::splat(1.0));
-    let room = half - (error * L::splat(255.5) + L::splat(BYTE_ROUNDING));
-    let mut floors = [zero; 3];
-    let mut sure = L::Mask::from_bits(u32::MAX);
-    for (floor, channel) in floors.iter_mut().zip(color) {
-        let scaled = channel.min(one).max(zero) * L::splat(255.0) + L::splat(QUANTISATION_BIAS);
-        *floor = scaled.floor();
-        let is_inside = (scaled - *floor - half).abs().lt(room);
-        // What is clamped for sure is a whole number however large the error.
-        let is_clamped = (channel - error).gt(one) | (channel + error).lt(zero);
-        sure = sure & (is_inside | is_clamped);
-    }
-    (floors[0] + floors[1] * L::splat(256.0) + floors[2] * L::splat(65536.0), sure)
+    let scaled = channel.min(one).max(zero) * L::splat(255.0) + L::splat(QUANTISATION_BIAS);
+    let floor = scaled.floor();
+    let is_inside = (scaled - floor - half).abs().lt(room);
+    // What is clamped for sure is a whole number however large the error.
+    let is_clamped = (channel - error).gt(one) | (channel + error).lt(zero);
+    (floor, is_inside | is_clamped)
 }
