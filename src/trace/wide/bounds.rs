@@ -14,6 +14,9 @@
 //! A = κ(3(|c| + r) + 6(|c|² + r²)/r). Where the sphere is far, D = a·r² − |c × d|² is off by κ(5r|c| + 6r²) only, and
 //! A = 8κ(|c| + r). The normal (P − c)/r is off by A/(g·r) + 4u.
 //!
+//! A sphere around the eye is a shell: everything that happens, happens inside of it. The ray meets it at
+//! t = (b + √D)/a, with the same bounds, and its normal is turned round. All other objects are met from outside.
+//!
 //! *Wall*: the same in x and z; a length along the ray is at most F = |d|/|(dx, dz)| times as long as its shadow.
 //!
 //! *Cap* at height Y: the point is (X/Y'·Y, Y, −Y/(Y'·k)), with relative errors below 3κ, and within
@@ -64,7 +67,10 @@ pub(super) struct Face {
     /// The centre, that of the axis at height 0, or that of the cap.
     pub center: [f64; 3],
     pub radius: f64,
-    pub inv_radius: f64,
+    /// What a vector from the centre is multiplied with to be the normal: below 0 where the face is met from inside.
+    pub per_radius: f64,
+    /// Whether the error at a hit is to be taken as it is there, not as it may be at the silhouette.
+    pub is_vague: bool,
     /// How far off a point is where an eye ray meets it, and the normal there.
     pub eye_point_error: f64,
     pub eye_normal_error: f64,
@@ -93,6 +99,8 @@ pub(super) struct EyeSphere {
     pub power_high: f64,
     /// Whether D is taken from the cross product.
     pub is_far: bool,
+    /// Whether the eye is inside.
+    pub is_shell: bool,
     /// How far two t must be apart to have an order, half of it.
     pub margin: f64,
     pub face: u32,
@@ -142,6 +150,12 @@ pub(super) enum Side {
     Outside,
     /// The light is inside of the infinite wall, and above or below the cylinder.
     InLine,
+    /// The light is inside of the sphere, the points are not.
+    Within,
+    /// The points are inside of the sphere, and so is the light: it hides nothing.
+    Open,
+    /// The points are inside of the sphere, and the light is not: it is hidden from all of them.
+    Closed,
     /// Nothing is proved about what it hides.
     Unknown,
 }
@@ -305,16 +319,17 @@ struct Silhouette {
     /// g.
     cosine: f64,
     is_far: bool,
+    is_inside: bool,
 }
 
-/// Returns `None` when the eye is not surely outside.
+/// Returns `None` when the eye is neither surely outside nor surely inside.
 fn silhouette<const N: usize>(eye: Eye, center: [f64; N], radius: f64) -> Option<Silhouette> {
     let (power, squares) = power(center.map(DoubleDouble::from), radius);
     let sigma = 8.0 * eye.roundoff * squares;
-    if power <= 4.0 * sigma {
+    if power.abs() <= 4.0 * sigma {
         return None;
     }
-    let distance = (power + radius * radius).sqrt();
+    let distance = (power + radius * radius).max(0.0).sqrt();
     let is_far = distance > 16.0 * radius;
     let kappa = 1.1 * eye.roundoff * if N == 2 { eye.stretch } else { 1.0 };
     let error = if is_far {
@@ -328,7 +343,15 @@ fn silhouette<const N: usize>(eye: Eye, center: [f64; N], radius: f64) -> Option
     let power_high =
         if cosine_squared > 0.25 { f64::INFINITY } else { power + cosine_squared * radius * radius * 1.001 };
     let cosine = cosine_squared.sqrt();
-    Some(Silhouette { power, power_low: power - 2.0 * sigma, power_high, error, cosine, is_far })
+    Some(Silhouette {
+        power,
+        power_low: power - 2.0 * sigma,
+        power_high,
+        error,
+        cosine,
+        is_far,
+        is_inside: power < 0.0,
+    })
 }
 
 fn eye_sphere(scene: &Scene<'_>, eye: Eye, i: usize, faces: &mut Vec<Face>) -> Option<EyeSphere> {
@@ -345,7 +368,8 @@ fn eye_sphere(scene: &Scene<'_>, eye: Eye, i: usize, faces: &mut Vec<Face>) -> O
         surface: primitive.surface.index(),
         center,
         radius,
-        inv_radius: 1.0 / radius,
+        per_radius: if seen.is_inside { -1.0 / radius } else { 1.0 / radius },
+        is_vague: is_vague(point_error, radius, seen.power),
         eye_point_error: point_error,
         eye_normal_error: point_error / radius + 4.0 * U,
         eye_error_at_right_angles: seen.error,
@@ -357,16 +381,25 @@ fn eye_sphere(scene: &Scene<'_>, eye: Eye, i: usize, faces: &mut Vec<Face>) -> O
         power_low: seen.power_low,
         power_high: seen.power_high,
         is_far: seen.is_far,
+        is_shell: seen.is_inside,
         margin: 2.0 * point_error,
         face: faces.len() as u32 - 1,
     })
+}
+
+/// Tells whether an error is large beside the radius or the shortest way from the eye.
+///
+/// `power`: of the eye; at most 2·radius times that way plus its square.
+fn is_vague(error: f64, radius: f64, power: f64) -> bool {
+    const LARGE: f64 = 1.0 / (1_u64 << 33) as f64;
+    error > LARGE * radius.min(power.abs() / radius)
 }
 
 /// Returns `None` when the eye is not surely outside.
 fn eye_cylinder(scene: &Scene<'_>, eye: Eye, i: usize, faces: &mut Vec<Face>) -> Option<EyeCylinder> {
     let c = &scene.cylinders;
     let (x, z, radius, y_min, y_max) = (c.x[i], c.z[i], c.radius[i], c.y_min[i], c.y_max[i]);
-    let seen = silhouette(eye, [x, z], radius);
+    let seen = silhouette(eye, [x, z], radius).filter(|seen| !seen.is_inside);
     let (power, squares) = power([x, z].map(DoubleDouble::from), radius);
     let is_inside_wall = power < -32.0 * eye.roundoff * squares;
     let (is_over, is_under) = (y_max < 0.0, y_min > 0.0);
@@ -395,7 +428,8 @@ fn eye_cylinder(scene: &Scene<'_>, eye: Eye, i: usize, faces: &mut Vec<Face>) ->
             surface: primitive.surface.index(),
             center: [x, height, z],
             radius,
-            inv_radius: 1.0 / radius,
+            per_radius: 1.0 / radius,
+            is_vague: kind == FaceKind::Wall && is_vague(point_error, radius, power),
             eye_point_error: point_error,
             eye_normal_error: if kind == FaceKind::Wall { point_error / radius + 4.0 * U } else { 0.0 },
             eye_error_at_right_angles: error,
@@ -438,7 +472,14 @@ fn seen_from(scene: &Scene<'_>, light: &Light) -> WideLight {
     let sphere = |i: usize| {
         let m = [DoubleDouble::sum(s.x[i], -x), DoubleDouble::sum(s.y[i], -y), DoubleDouble::sum(s.z[i], -z)];
         let (power, squares) = power(m, s.radius[i]);
-        let side = if power > MIN_POWER * squares { Side::Outside } else { Side::Unknown };
+        let is_shell = s.x[i] * s.x[i] + s.y[i] * s.y[i] + s.z[i] * s.z[i] < s.radius[i] * s.radius[i];
+        let side = match (power > MIN_POWER * squares, power < -MIN_POWER * squares, is_shell) {
+            (true, _, false) => Side::Outside,
+            (true, _, true) => Side::Closed,
+            (_, true, false) => Side::Within,
+            (_, true, true) => Side::Open,
+            (false, false, _) => Side::Unknown,
+        };
         occluder(m, power, s.radius[i], [0.0; 2], side)
     };
     let cylinder = |i: usize| {

@@ -107,6 +107,13 @@ pub(super) fn meet_sphere<L: Lanes>(
 ) {
     let b = rays.dx * L::splat(sphere.center[0]) + L::splat(row.along);
     let b_squared = b * b;
+    if sphere.is_shell {
+        let hit = b_squared.gt(rays.a * L::splat(sphere.power_high));
+        let t = (b + (b_squared - rays.a * L::splat(sphere.power)).sqrt()) / rays.a;
+        nearest.doubt = nearest.doubt | !hit;
+        nearest.consider(bounds, hit, t, L::splat(sphere.margin), sphere.face);
+        return;
+    }
     let maybe = b_squared.ge(rays.a * L::splat(sphere.power_low)) & b.gt(L::splat(0.0));
     if !maybe.any() {
         return;

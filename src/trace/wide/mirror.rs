@@ -186,18 +186,26 @@ fn meet_sphere<L: Lanes>(
     let power = dot(m, m) - L::splat(squared);
     let discriminant = b * b - power;
     let is_other = !rays.leaving.eq(L::splat(f64::from(face.equation)));
+    // The root is off by at most its square's error by g·r.
+    let margin = (reach.off + reach.sphere_slack * L::splat(1.0 / (MIN_COSINE * face.radius))) * L::splat(2.0);
+    let least = reach.sphere_slack + L::splat(squared * MIN_COSINE * MIN_COSINE);
+    if face.per_radius < 0.0 {
+        // A shell: where the ray leaves it the power is 0.
+        let discriminant = L::select(is_other, discriminant, b * b);
+        let is_inside = (is_other & power.lt(reach.sphere_slack * L::splat(-2.0))) | (!is_other & b.gt(reach.off));
+        let hit = active & is_inside & discriminant.gt(least);
+        nearest.doubt = nearest.doubt | (active & !hit);
+        nearest.consider(bounds, hit, b + discriminant.sqrt(), margin, sphere_face(face));
+        return;
+    }
     let maybe = active & is_other & discriminant.ge(-reach.sphere_slack) & b.ge(-reach.off);
     if !maybe.any() {
         return;
     }
-    let is_proper = discriminant.gt(reach.sphere_slack + L::splat(squared * MIN_COSINE * MIN_COSINE));
-    let hit = maybe & is_proper & b.gt(reach.off) & power.gt(reach.sphere_slack * L::splat(2.0));
+    let hit = maybe & discriminant.gt(least) & b.gt(reach.off) & power.gt(reach.sphere_slack * L::splat(2.0));
     nearest.doubt = nearest.doubt | (maybe & !hit);
     if hit.any() {
-        let t = b - discriminant.sqrt();
-        // The root is off by at most its square's error by g·r.
-        let margin = reach.off + reach.sphere_slack * L::splat(1.0 / (MIN_COSINE * face.radius));
-        nearest.consider(bounds, hit, t, margin + margin, sphere_face(face));
+        nearest.consider(bounds, hit, b - discriminant.sqrt(), margin, sphere_face(face));
     }
 }
 
@@ -294,11 +302,11 @@ pub(super) fn points<L: Lanes>(
     let extent = bounds.extent;
     let [x, y, z] =
         [rays.origin[0] + rays.dir[0] * t, rays.origin[1] + rays.dir[1] * t, rays.origin[2] + rays.dir[2] * t];
-    let inv_radius = L::splat(face.inv_radius);
-    let nx = (x - L::splat(face.center[0])) * inv_radius;
-    let nz = (z - L::splat(face.center[2])) * inv_radius;
+    let per_radius = L::splat(face.per_radius);
+    let nx = (x - L::splat(face.center[0])) * per_radius;
+    let nz = (z - L::splat(face.center[2])) * per_radius;
     let (point, normal) = match face.kind {
-        FaceKind::Sphere => ([x, y, z], [nx, (y - L::splat(face.center[1])) * inv_radius, nz]),
+        FaceKind::Sphere => ([x, y, z], [nx, (y - L::splat(face.center[1])) * per_radius, nz]),
         FaceKind::Wall => ([x, y, z], [nx, zero, nz]),
         FaceKind::LowerCap => ([x, L::splat(face.center[1]), z], [zero, L::splat(-1.0), zero]),
         FaceKind::UpperCap => ([x, L::splat(face.center[1]), z], [zero, L::splat(1.0), zero]),
@@ -311,7 +319,7 @@ pub(super) fn points<L: Lanes>(
         let length_error = (dot(normal, normal) - L::splat(1.0)).abs() * L::splat(0.5) + L::splat(8.0 * U);
         let off_surface = length_error * L::splat(face.radius);
         let point_error = (passes_within + off_surface) / cosine * L::splat(1.06);
-        let normal_error = point_error * inv_radius + L::splat(4.0 * U);
+        let normal_error = point_error * per_radius.abs() + L::splat(4.0 * U);
         let is_known = cosine.gt(L::splat(MIN_COSINE)) & normal_error.lt(L::splat(MAX_NORMAL_ERROR));
         (point_error, normal_error, length_error, lanes & !is_known)
     } else {

@@ -306,11 +306,11 @@ impl TileJob<'_> {
         let per_length = one / (dx * dx + (dy * dy + one)).sqrt();
         let view = [-(dx * per_length), -(dy * per_length), per_length];
         let [x, y, z] = [dx * t, dy * t, -t];
-        let inv_radius = L::splat(face.inv_radius);
+        let per_radius = L::splat(face.per_radius);
         let [cx, cy, cz] = face.center;
-        let (nx, nz) = ((x - L::splat(cx)) * inv_radius, (z - L::splat(cz)) * inv_radius);
+        let (nx, nz) = ((x - L::splat(cx)) * per_radius, (z - L::splat(cz)) * per_radius);
         let (point, normal) = match face.kind {
-            FaceKind::Sphere => ([x, y, z], [nx, (y - L::splat(cy)) * inv_radius, nz]),
+            FaceKind::Sphere => ([x, y, z], [nx, (y - L::splat(cy)) * per_radius, nz]),
             FaceKind::Wall => ([x, y, z], [nx, zero, nz]),
             FaceKind::LowerCap => ([x, L::splat(cy), z], [zero, L::splat(-1.0), zero]),
             FaceKind::UpperCap => ([x, L::splat(cy), z], [zero, one, zero]),
@@ -318,10 +318,10 @@ impl TileJob<'_> {
         let is_mirror = self.wide.bounds.terms[face.surface].reflectance > 0.0;
         let mut point_error = L::splat(face.eye_point_error);
         let mut normal_error = L::splat(face.eye_normal_error);
-        if is_mirror && matches!(face.kind, FaceKind::Sphere | FaceKind::Wall) {
+        if face.is_vague || (is_mirror && matches!(face.kind, FaceKind::Sphere | FaceKind::Wall)) {
             // Reflections multiply the error, so it is taken as it is here, not as it may be at the silhouette.
             point_error = L::splat(1.1 * face.eye_error_at_right_angles) / shade::dot(normal, view);
-            normal_error = point_error * inv_radius + L::splat(4.0 * bounds::U);
+            normal_error = point_error * per_radius.abs() + L::splat(4.0 * bounds::U);
         }
         let dir_error = L::splat(2.0 * self.wide.bounds.eye_roundoff);
         let length_error = normal_error * L::splat(0.5);

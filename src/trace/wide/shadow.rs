@@ -2,7 +2,7 @@
 //!
 //! The segment is followed from the light, whose place is exact, to the point: w, with s from 0 at the light to 1 at the
 //! point. Every point lies outside of all objects, or on them, because the eye does and a ray ends at the first surface
-//! it meets. So a sphere that the light is outside of is met with 0 < s < 1 exactly when D ≥ 0 and 0 < b < a, with a, b, D
+//! it meets; or else inside of a shell (see `bounds`), which hides nothing that is inside too and everything that is not. So a sphere that the light is outside of is met with 0 < s < 1 exactly when D ≥ 0 and 0 < b < a, with a, b, D
 //! as in `bounds`: no root is taken. A cylinder is met if, within the part of the segment that lies inside of its infinite
 //! wall, some height is its own.
 
@@ -19,6 +19,8 @@ const MIN_WALL_DISCRIMINANT: f64 = 1.0 / 262_144.0;
 pub(super) struct LightOccluders {
     /// For each light the spheres and the cylinders.
     lists: Vec<[Vec<u32>; 2]>,
+    /// For each light whether it is hidden from all of the face.
+    hidden: Vec<bool>,
 }
 
 impl LightOccluders {
@@ -27,14 +29,23 @@ impl LightOccluders {
     /// either; its cylinder lies wholly on the other side of the light, or stands on the face and has other faces.
     pub fn new(bounds: &Bounds, plan: &Plan<'_>, face: &Face) -> Self {
         if plan.settings.part == Part::A {
-            return Self { lists: vec![Default::default(); bounds.lights.len()] };
+            let n_lights = bounds.lights.len();
+            return Self { lists: vec![Default::default(); n_lights], hidden: vec![false; n_lights] };
         }
+        let side = |light_idx: usize, i: u32| bounds.lights[light_idx].spheres[i as usize].side;
+        let hidden = (0..bounds.lights.len())
+            .map(|light_idx| {
+                let among = plan.occluders(face.object, light_idx);
+                among.spheres.iter().any(|&i| side(light_idx, i) == Side::Closed)
+            })
+            .collect();
         let lists = (0..bounds.lights.len())
             .map(|light_idx| {
                 let light = &bounds.lights[light_idx];
                 let among = plan.occluders(face.object, light_idx);
                 let spheres = (among.spheres.iter().copied())
-                    .filter(|&i| bounds.sphere_equations[i as usize] != face.equation)
+                    .filter(|&i| bounds.sphere_equations[i as usize] != face.equation || face.per_radius < 0.0)
+                    .filter(|&i| side(light_idx, i) != Side::Open)
                     .collect();
                 let cylinders = (among.cylinders.iter().copied())
                     .filter(|&i| face.object != Object::Cylinder(i))
@@ -44,7 +55,7 @@ impl LightOccluders {
                 [spheres, cylinders]
             })
             .collect();
-        Self { lists }
+        Self { lists, hidden }
     }
 }
 
@@ -74,6 +85,9 @@ pub(super) fn shadow<L: Lanes>(
     at: &Points<L>,
     facing: L::Mask,
 ) -> (L::Mask, L::Mask) {
+    if occluders.hidden[light_idx] {
+        return (facing, L::Mask::from_bits(0));
+    }
     let mut open = facing;
     let mut vague = L::Mask::from_bits(0);
     let [spheres, cylinders] = &occluders.lists[light_idx];
@@ -135,8 +149,17 @@ fn behind_sphere<L: Lanes>(
     discriminant: L,
     slack: L,
 ) -> (L::Mask, L::Mask) {
-    if sphere.side == Side::Unknown {
-        return (L::Mask::from_bits(0), L::Mask::from_bits(u32::MAX));
+    let none = L::Mask::from_bits(0);
+    match sphere.side {
+        Side::Outside => {}
+        Side::Within => {
+            // The power of the end, a − 2b + p, is off by at most as much as D and twice a.
+            let power = segment.a - b - b + L::splat(sphere.power);
+            let sure = segment.error * (L::splat(sphere.m_length) + segment.distance) * L::splat(4.0);
+            let blocked = power.gt(sure + L::splat(8.0 * U * sphere.power.abs()));
+            return (blocked, !blocked);
+        }
+        Side::InLine | Side::Open | Side::Closed | Side::Unknown => return (none, !none),
     }
     let b_slack = segment.error * (L::splat(sphere.m_length) + segment.distance * L::splat(2.0));
     let beyond = b - segment.a;
@@ -149,7 +172,7 @@ fn behind_sphere<L: Lanes>(
 #[inline(always)]
 fn behind_cylinder<L: Lanes>(cylinder: &Occluder, segment: &Segment<L>, tau: L, open: L::Mask) -> (L::Mask, L::Mask) {
     let none = L::Mask::from_bits(0);
-    if cylinder.side == Side::Unknown {
+    if !matches!(cylinder.side, Side::Outside | Side::InLine) {
         return (none, open);
     }
     let (y_min, y_max) = (L::splat(cylinder.y_min), L::splat(cylinder.y_max));
