@@ -122,16 +122,13 @@ fn packets_give_the_settled_pixels_of_every_scene() {
 
 #[test]
 fn packets_leave_few_pixels_open() {
-    // FIXME: of these, many or all: the eye is inside of an object, or a light; there are more objects than tables are made
-    // for; rays go from mirror to mirror.
-    let inside =
-        ["inside", "light", "double-helix", "hall-of-mirrors", "molecule", "still-life", "sunflower", "temple"];
+    // FIXME: of these more: mirrors of 10⁴ times the size of what stands between them, and of chains of mirrors.
+    let hard = ["double-helix", "hall-of-mirrors", "inside"];
     let mut failures = Vec::new();
     for_every_scene(|title, view| {
         let n_pixels = 400 * 300;
         let (_, counts) = render(view, &sized(400, 300), Some(Backend::best()));
-        if counts.settled_pixels * 200 > n_pixels && !inside.iter().any(|name| title.ends_with(&format!("{name}.cli")))
-        {
+        if counts.settled_pixels * 200 > n_pixels && !hard.iter().any(|name| title.ends_with(&format!("{name}.cli"))) {
             failures.push(format!("{title}: {} of {n_pixels}", counts.settled_pixels));
         }
     });

@@ -41,7 +41,7 @@ pub(super) const MIN_COSINE: f64 = 1.0 / 512.0;
 /// The same for caps, on which nothing is lost but length.
 pub(super) const MIN_CAP_COSINE: f64 = 1.0 / 16384.0;
 
-/// The largest error of a normal at which a hit is taken: what is neglected in second order stays below a hundredth of the
+/// The largest error of a normal at which an eye ray's hit is taken: what is neglected in second order stays below a hundredth of the
 /// bounds as long as this is below a 64th of the smallest cosine.
 pub(super) const MAX_NORMAL_ERROR: f64 = 1.0 / 16_777_216.0;
 
@@ -234,8 +234,8 @@ pub(super) struct Bounds {
     pub cylinders: Vec<EyeCylinder>,
     pub lights: Vec<WideLight>,
     pub terms: Vec<Terms>,
-    /// At least the distance between any two points of objects.
-    pub extent: f64,
+    /// A usual radius.
+    pub size: f64,
     pub wall_equations: Vec<u32>,
     pub sphere_equations: Vec<u32>,
 }
@@ -263,7 +263,7 @@ impl Bounds {
             cylinders,
             lights: scene.lights.iter().map(|light| seen_from(scene, light)).collect(),
             terms: scene.surfaces.iter().map(|s| terms_of(s, &scene.lights, plan.settings.part)).collect(),
-            extent: extent(scene),
+            size: usual_radius(scene),
             sphere_equations: scene.sphere_equations[..n_spheres].iter().map(|id| id.number()).collect(),
             wall_equations: scene.wall_equations[..n_cylinders].iter().map(|id| id.number()).collect(),
         })
@@ -283,14 +283,11 @@ fn is_moderate(scene: &Scene<'_>) -> bool {
         && scene.surfaces.iter().all(|s| s.reflectance <= MAX_COEFFICIENT)
 }
 
-/// Returns at least the distance between any two points of the objects.
-fn extent(scene: &Scene<'_>) -> f64 {
-    let (s, c) = (&scene.spheres, &scene.cylinders);
-    let of_sphere = |i: usize| s.x[i].abs() + s.y[i].abs() + s.z[i].abs() + s.radius[i];
-    let of_cylinder = |i: usize| c.x[i].abs() + c.z[i].abs() + c.radius[i] + c.y_min[i].abs().max(c.y_max[i].abs());
-    let spheres = (0..s.radius.len()).map(of_sphere);
-    let reach = spheres.chain((0..c.radius.len()).map(of_cylinder)).fold(0.0, f64::max);
-    2.01 * reach
+/// Returns the median radius, or 1 when there is none.
+fn usual_radius(scene: &Scene<'_>) -> f64 {
+    let mut radii: Vec<_> = scene.spheres.radius.iter().chain(&scene.cylinders.radius).copied().collect();
+    radii.sort_unstable_by(f64::total_cmp);
+    radii.get(radii.len() / 2).copied().unwrap_or(1.0)
 }
 
 /// The power of the origin with regard to a circle or sphere at `m`, and |m|² + r².

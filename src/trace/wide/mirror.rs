@@ -2,13 +2,13 @@
 //!
 //! # Errors
 //! A ray is the line through o along the unit vector d; the exact ray starts within e of o and its direction is within ε of
-//! d. With M at least the distance between any two points of objects, E = e + M·ε + 8u·M bounds how far the exact ray is
-//! off at any point where it may meet something, and the error of b = m·d. D = b² − |m|² + r² is off by at most 6M·E, and
-//! for a wall, where a = dx² + dz² stands before |m|² − r², by 8M·E.
+//! d. With m from o to a centre, b = m·d is off by e + |m|(ε + 8u), and D = b² − |m|² + r², or for a wall, where
+//! a = dx² + dz² stands before |m|² − r², by at most 8|m|²(ε + 8u) + 6|m|e + 16u·r². Of |m| only the square is at hand;
+//! for any length ℓ, |m| ≤ (|m|²/ℓ + ℓ)/2, and ℓ is a usual radius of the scene.
 //!
 //! *How far off a hit is*, is measured, not predicted. Let P be the computed point, off the surface by ρ (for a sphere
 //! | |P − c| − r |, known from the length of the computed normal), and γ the cosine between normal and ray. The exact ray
-//! passes P at a distance of at most e + t·ε + 8u·M =: δ. Along the ray its distance from the surface changes by γ for each
+//! passes P at a distance of at most e + t·ε + 8u(|P| + t) =: δ. Along the ray its distance from the surface changes by γ for each
 //! unit of length, up to second order, so the exact ray meets the surface within (δ·sin + ρ)/γ of the point where it passes
 //! P, and that point is within (δ + ρ)/γ of P. The second order is below a 20th of that as long as the error of the normal is
 //! below a 64th of γ, which is made sure.
@@ -19,7 +19,7 @@
 use crate::plan::Object;
 use crate::trace::kernels::{Lanes, Mask};
 use crate::trace::wide::TILE_PIXELS;
-use crate::trace::wide::bounds::{Bounds, Face, FaceKind, MAX_NORMAL_ERROR, MIN_CAP_COSINE, MIN_COSINE, Terms, U};
+use crate::trace::wide::bounds::{Bounds, Face, FaceKind, MIN_CAP_COSINE, MIN_COSINE, Terms, U};
 use crate::trace::wide::eye::{MAX_LANES, Nearest};
 use crate::trace::wide::shade::{Colors, Points, dot};
 
@@ -133,14 +133,39 @@ impl Queue {
     }
 }
 
-/// What the bounds of reflected rays have in common.
+/// What the bounds of a packet of reflected rays have in common.
 #[derive(Clone, Copy, Debug)]
 struct Reach<L> {
-    /// E.
-    off: L,
-    /// 6M·E, and 8M·E.
-    sphere_slack: L,
-    wall_slack: L,
+    /// The error of b is at most |m|²·`along` + `along_least`.
+    along: L,
+    along_least: L,
+    /// The error of D is at most |m|²·`square` + `square_least` + 16u·r².
+    square: L,
+    square_least: L,
+}
+
+impl<L: Lanes> Reach<L> {
+    #[inline(always)]
+    fn new(bounds: &Bounds, rays: &Rays<L>) -> Self {
+        let size = bounds.size;
+        let turned = rays.dir_error + L::splat(8.0 * U);
+        Self {
+            along: turned * L::splat(0.5 / size),
+            along_least: rays.origin_error * L::splat(1.01) + turned * L::splat(0.5 * size),
+            square: turned * L::splat(8.0) + rays.origin_error * L::splat(3.0 / size),
+            square_least: rays.origin_error * L::splat(3.0 * size),
+        }
+    }
+
+    #[inline(always)]
+    fn along(&self, m_squared: L) -> L {
+        m_squared * self.along + self.along_least
+    }
+
+    #[inline(always)]
+    fn square(&self, m_squared: L, radius_squared: f64) -> L {
+        m_squared * self.square + (self.square_least + L::splat(16.0 * U * radius_squared))
+    }
 }
 
 /// Finds what a packet of reflected rays meets first.
@@ -152,10 +177,7 @@ pub(super) fn nearest_hit<L: Lanes>(
     rays: &Rays<L>,
     active: L::Mask,
 ) -> Nearest<L> {
-    let extent = bounds.extent;
-    let rounding = L::splat(8.0 * U * extent);
-    let off = rays.origin_error + rays.dir_error * L::splat(extent) + rounding;
-    let reach = Reach { off, sphere_slack: off * L::splat(6.0 * extent), wall_slack: off * L::splat(8.0 * extent) };
+    let reach = Reach::new(bounds, rays);
     let mut nearest = Nearest::nothing();
     for &i in spheres {
         meet_sphere(&mut nearest, bounds, &bounds.faces[i as usize], rays, &reach, active);
@@ -183,29 +205,40 @@ fn meet_sphere<L: Lanes>(
     ];
     let squared = face.radius * face.radius;
     let b = dot(m, rays.dir);
-    let power = dot(m, m) - L::splat(squared);
+    let m_squared = dot(m, m);
+    let power = m_squared - L::splat(squared);
     let discriminant = b * b - power;
     let is_other = !rays.leaving.eq(L::splat(f64::from(face.equation)));
-    // The root is off by at most its square's error by g·r.
-    let margin = (reach.off + reach.sphere_slack * L::splat(1.0 / (MIN_COSINE * face.radius))) * L::splat(2.0);
-    let least = reach.sphere_slack + L::splat(squared * MIN_COSINE * MIN_COSINE);
+    let slack = reach.square(m_squared, squared);
+    let least = slack + L::splat(squared * MIN_COSINE * MIN_COSINE);
     if face.per_radius < 0.0 {
         // A shell: where the ray leaves it the power is 0.
         let discriminant = L::select(is_other, discriminant, b * b);
-        let is_inside = (is_other & power.lt(reach.sphere_slack * L::splat(-2.0))) | (!is_other & b.gt(reach.off));
+        let off = reach.along(m_squared);
+        let is_inside = (is_other & power.lt(-slack - slack)) | (!is_other & b.gt(off));
         let hit = active & is_inside & discriminant.gt(least);
         nearest.doubt = nearest.doubt | (active & !hit);
-        nearest.consider(bounds, hit, b + discriminant.sqrt(), margin, sphere_face(face));
+        let root = discriminant.sqrt();
+        let margin = off + slack / root;
+        nearest.consider(bounds, hit, b + root, margin + margin, sphere_face(face));
         return;
     }
-    let maybe = active & is_other & discriminant.ge(-reach.sphere_slack) & b.ge(-reach.off);
+    let line_meets = active & is_other & discriminant.ge(-slack);
+    if !line_meets.any() {
+        return;
+    }
+    let off = reach.along(m_squared);
+    let maybe = line_meets & b.ge(-off);
     if !maybe.any() {
         return;
     }
-    let hit = maybe & discriminant.gt(least) & b.gt(reach.off) & power.gt(reach.sphere_slack * L::splat(2.0));
+    let hit = maybe & discriminant.gt(least) & b.gt(off) & power.gt(slack + slack);
     nearest.doubt = nearest.doubt | (maybe & !hit);
     if hit.any() {
-        nearest.consider(bounds, hit, b - discriminant.sqrt(), margin, sphere_face(face));
+        let root = discriminant.sqrt();
+        // A root is off by at most the error of its square, divided by it.
+        let margin = off + slack / root;
+        nearest.consider(bounds, hit, b - root, margin + margin, sphere_face(face));
     }
 }
 
@@ -236,13 +269,15 @@ fn meet_cylinder<L: Lanes>(
     let squared = wall.radius * wall.radius;
     let a = dx * dx + dz * dz;
     let b = mx * dx + mz * dz;
-    let power = mx * mx + mz * mz - L::splat(squared);
+    let m_squared = mx * mx + mz * mz;
+    let power = m_squared - L::splat(squared);
     let discriminant = b * b - a * power;
-    let slack = reach.wall_slack;
+    let slack = reach.square(m_squared, squared);
+    let off = reach.along(m_squared);
     let is_other = !rays.leaving.eq(L::splat(f64::from(wall.equation)));
     let is_outside = power.gt(slack);
     let is_inside = power.lt(-slack);
-    let leads_away = is_outside & b.lt(-reach.off);
+    let leads_away = is_outside & b.lt(-off);
     let maybe = active & is_other & discriminant.ge(-slack) & !leads_away;
     if !maybe.any() {
         return;
@@ -258,15 +293,15 @@ fn meet_cylinder<L: Lanes>(
     let per_a = L::splat(1.0) / a;
     let (enter, leave) = ((b - root) * per_a, (b + root) * per_a);
     let stretch = leave.abs() * (rays.dir_error * L::splat(2.0) + L::splat(8.0 * U));
-    let slip = per_a * (reach.off + slack / root + stretch) * L::splat(1.5);
-    let height_slip = slip + reach.off * L::splat(2.0) + stretch;
+    let slip = per_a * (off + slack / root + stretch) * L::splat(1.5);
+    let height_slip = slip + stretch + rays.origin_error * L::splat(2.0) + oy.abs() * L::splat(8.0 * U);
     let (first_height, last_height) = (oy + enter * dy, oy + leave * dy);
     let (floor, ceiling) = (y_min + height_slip, y_max - height_slip);
     let (below, above) = (y_min - height_slip, y_max + height_slip);
 
     let starts_above = (is_outside & first_height.gt(above)) | (is_inside & oy.gt(y_max + rays.origin_error));
     let starts_below = (is_outside & first_height.lt(below)) | (is_inside & oy.lt(y_min - rays.origin_error));
-    let meets_wall = is_outside & b.gt(reach.off) & enter.gt(slip) & first_height.gt(floor) & first_height.lt(ceiling);
+    let meets_wall = is_outside & b.gt(off) & enter.gt(slip) & first_height.gt(floor) & first_height.lt(ceiling);
     let meets_top = starts_above & last_height.lt(ceiling) & dy.lt(L::splat(-MIN_CAP_COSINE));
     let meets_bottom = starts_below & last_height.gt(floor) & dy.gt(L::splat(MIN_CAP_COSINE));
     let passes = (starts_above & last_height.gt(above)) | (starts_below & last_height.lt(below));
@@ -282,7 +317,7 @@ fn meet_cylinder<L: Lanes>(
     for (lanes, height, face) in [(on_bottom, y_min, first + 1), (on_top, y_max, first + 2)] {
         if lanes.any() {
             let rise = L::splat(1.0) / dy;
-            let margin = reach.off * rise.abs();
+            let margin = (rays.origin_error + (height.abs() + oy.abs()) * L::splat(8.0 * U)) * rise.abs() + stretch;
             nearest.consider(bounds, lanes, (height - oy) * rise, margin + margin, face);
         }
     }
@@ -299,7 +334,6 @@ pub(super) fn points<L: Lanes>(
     lanes: L::Mask,
 ) -> (Points<L>, L::Mask) {
     let zero = L::splat(0.0);
-    let extent = bounds.extent;
     let [x, y, z] =
         [rays.origin[0] + rays.dir[0] * t, rays.origin[1] + rays.dir[1] * t, rays.origin[2] + rays.dir[2] * t];
     let per_radius = L::splat(face.per_radius);
@@ -312,7 +346,8 @@ pub(super) fn points<L: Lanes>(
         FaceKind::UpperCap => ([x, L::splat(face.center[1]), z], [zero, L::splat(1.0), zero]),
     };
     let cosine = -dot(normal, rays.dir);
-    let passes_within = rays.origin_error + t * rays.dir_error + L::splat(8.0 * U * extent);
+    let lengths = x.abs() + y.abs() + z.abs() + t;
+    let passes_within = rays.origin_error + t * rays.dir_error + lengths * L::splat(8.0 * U);
     let is_curved = matches!(face.kind, FaceKind::Sphere | FaceKind::Wall);
     let (point_error, normal_error, length_error, vague) = if is_curved {
         // | |n|² − 1 | / 2, with what the normal's own roundings hide.
@@ -320,13 +355,16 @@ pub(super) fn points<L: Lanes>(
         let off_surface = length_error * L::splat(face.radius);
         let point_error = (passes_within + off_surface) / cosine * L::splat(1.06);
         let normal_error = point_error * per_radius.abs() + L::splat(4.0 * U);
-        let is_known = cosine.gt(L::splat(MIN_COSINE)) & normal_error.lt(L::splat(MAX_NORMAL_ERROR));
+        let is_known = cosine.gt(L::splat(MIN_COSINE)) & normal_error.lt(cosine * L::splat(1.0 / 64.0));
         (point_error, normal_error, length_error, lanes & !is_known)
     } else {
         let point_error = passes_within / cosine * L::splat(1.01);
         (point_error, zero, zero, lanes & !cosine.gt(L::splat(MIN_CAP_COSINE)))
     };
     let view = [-rays.dir[0], -rays.dir[1], -rays.dir[2]];
+    // Far below one, so that errors of second order do not count.
+    let is_small = point_error.lt(L::splat(bounds.size / 1024.0)) & rays.dir_error.lt(L::splat(1.0 / 256.0));
+    let vague = vague | (lanes & !is_small);
     let active = lanes & !vague;
     let dir_error = rays.dir_error;
     (Points { point, normal, view, point_error, normal_error, length_error, dir_error, active }, vague)
