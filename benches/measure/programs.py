@@ -71,7 +71,7 @@ class Converted:
         return case.n_objects <= self.max_objects
 
     def command(self, case, folder):
-        translated = folder / f"{case.name}-{case.side}{self.suffix}"
+        translated = folder / f"{case.scene.stem}-{case.side}{self.suffix}"
         if not translated.exists():
             converter = [sys.executable, str(self.converter), str(case.scene), str(translated)]
             subprocess.run(converter + ([str(case.side)] if self.suffix == ".dat" else []), check=True)
