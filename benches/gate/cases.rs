@@ -6,6 +6,8 @@ use clisc::image::encode_png;
 use clisc::ir;
 use clisc::plan;
 use clisc::source::Source;
+use clisc::trace::Tracer;
+use clisc::trace::kernels::Backend;
 
 use crate::input;
 
@@ -27,6 +29,9 @@ pub const CASES: &[Case] = &[
     Case { name: "language/lower/1000", run: lower },
     Case { name: "plan/small/still-life", run: || plan(&input::example("still-life")) },
     Case { name: "plan/cloud/1000", run: || plan(&input::cloud(1000)) },
+    Case { name: "trace/still-life/avx2", run: || trace(Some(Backend::Avx2)) },
+    Case { name: "trace/still-life/scalar", run: || trace(Some(Backend::Scalar)) },
+    Case { name: "trace/still-life/pixelwise", run: || trace(None) },
     Case { name: "encode/png/render", run: encode },
     Case { name: "image/small/candles", run: || image("candles") },
     Case { name: "image/small/still-life", run: || image("still-life") },
@@ -72,6 +77,13 @@ fn plan(source: &Source) {
     let program = input::program(source);
     let view = input::view(&program);
     measured(|| plan::plan(view, &input::square(300)));
+}
+
+fn trace(backend: Option<Backend>) {
+    let program = input::program(&input::example("still-life"));
+    let tracer = Tracer::with_backend(plan::plan(input::view(&program), &input::square(64)), backend);
+    let mut rgb = vec![0; 64 * 64 * 3];
+    measured(|| tracer.render_band(0..64, &mut rgb, &|| false));
 }
 
 fn encode() {

@@ -9,6 +9,7 @@ mod image;
 mod input;
 mod language;
 mod plan;
+mod trace;
 
 fn main() {
     divan::main();
