@@ -71,6 +71,8 @@ pub(super) struct Face {
     pub per_radius: f64,
     /// Whether the error at a hit is to be taken as it is there, not as it may be at the silhouette.
     pub is_vague: bool,
+    /// The number of the group that it belongs to, if any.
+    pub group: Option<u32>,
     /// How far off a point is where an eye ray meets it, and the normal there.
     pub eye_point_error: f64,
     pub eye_normal_error: f64,
@@ -173,6 +175,8 @@ pub(super) struct Occluder {
     pub y_min: f64,
     pub y_max: f64,
     pub side: Side,
+    /// The number of its equation, of spheres alone.
+    pub equation: f64,
 }
 
 /// A light, and what each object is to it.
@@ -234,6 +238,9 @@ pub(super) struct Bounds {
     pub cylinders: Vec<EyeCylinder>,
     pub lights: Vec<WideLight>,
     pub terms: Vec<Terms>,
+    /// Spheres that are met from outside and have equal surfaces, by the numbers of their faces: a packet that meets
+    /// several of them is shaded as one.
+    pub groups: Vec<Vec<u32>>,
     /// A usual radius.
     pub size: f64,
     pub wall_equations: Vec<u32>,
@@ -256,7 +263,9 @@ impl Bounds {
         let n_cylinders = scene.cylinders.radius.len();
         let cylinders =
             (0..n_cylinders).map(|i| eye_cylinder(scene, eye, i, &mut faces)).collect::<Option<Vec<_>>>()?;
+        let groups = group_spheres(scene, &mut faces);
         Some(Self {
+            groups,
             eye_roundoff: eye.roundoff,
             faces,
             spheres,
@@ -268,6 +277,21 @@ impl Bounds {
             wall_equations: scene.wall_equations[..n_cylinders].iter().map(|id| id.number()).collect(),
         })
     }
+}
+
+/// Finds the spheres with equal surfaces.
+fn group_spheres(scene: &Scene<'_>, faces: &mut [Face]) -> Vec<Vec<u32>> {
+    let mut groups: Vec<(&Surface, Vec<u32>)> = Vec::new();
+    for (i, face) in (0..).zip(faces).filter(|(_, face)| face.kind == FaceKind::Sphere && face.per_radius > 0.0) {
+        let surface = &scene.surfaces[face.surface];
+        let group = groups.iter().position(|(other, _)| *other == surface).unwrap_or(groups.len());
+        if group == groups.len() {
+            groups.push((surface, Vec::new()));
+        }
+        groups[group].1.push(i);
+        face.group = Some(group as u32);
+    }
+    groups.into_iter().map(|(_, members)| members).collect()
 }
 
 /// Tells whether all numbers of a scene lie where the bounds hold.
@@ -366,6 +390,7 @@ fn eye_sphere(scene: &Scene<'_>, eye: Eye, i: usize, faces: &mut Vec<Face>) -> O
         center,
         radius,
         per_radius: if seen.is_inside { -1.0 / radius } else { 1.0 / radius },
+        group: None,
         is_vague: is_vague(point_error, radius, seen.power),
         eye_point_error: point_error,
         eye_normal_error: point_error / radius + 4.0 * U,
@@ -426,6 +451,7 @@ fn eye_cylinder(scene: &Scene<'_>, eye: Eye, i: usize, faces: &mut Vec<Face>) ->
             center: [x, height, z],
             radius,
             per_radius: 1.0 / radius,
+            group: None,
             is_vague: kind == FaceKind::Wall && is_vague(point_error, radius, power),
             eye_point_error: point_error,
             eye_normal_error: if kind == FaceKind::Wall { point_error / radius + 4.0 * U } else { 0.0 },
@@ -477,7 +503,7 @@ fn seen_from(scene: &Scene<'_>, light: &Light) -> WideLight {
             (_, true, true) => Side::Open,
             (false, false, _) => Side::Unknown,
         };
-        occluder(m, power, s.radius[i], [0.0; 2], side)
+        Occluder { equation: f64::from(scene.sphere_equations[i].number()), ..occluder(m, power, s.radius[i], [0.0; 2], side) }
     };
     let cylinder = |i: usize| {
         let m = [DoubleDouble::sum(c.x[i], -x), DoubleDouble::ZERO, DoubleDouble::sum(c.z[i], -z)];
@@ -510,6 +536,7 @@ fn occluder(m: [DoubleDouble; 3], power: f64, radius: f64, [y_min, y_max]: [f64;
         y_min,
         y_max,
         side,
+        equation: f64::NAN,
     }
 }
 

@@ -21,7 +21,7 @@ use crate::trace::kernels::{Lanes, Mask};
 use crate::trace::wide::TILE_PIXELS;
 use crate::trace::wide::bounds::{Bounds, Face, FaceKind, MIN_CAP_COSINE, MIN_COSINE, Terms, U};
 use crate::trace::wide::eye::{MAX_LANES, Nearest};
-use crate::trace::wide::shade::{Colors, Points, dot};
+use crate::trace::wide::shade::{Colors, Points, dot, splat_each};
 
 /// A packet of reflected rays, and what becomes of the colours they find.
 ///
@@ -323,12 +323,53 @@ fn meet_cylinder<L: Lanes>(
     }
 }
 
+/// What a packet of reflected rays meets: one face, or spheres of one group.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Met<L> {
+    kind: FaceKind,
+    center: [L; 3],
+    radius: L,
+    per_radius: L,
+    equation: L,
+}
+
+impl<L: Lanes> Met<L> {
+    /// Makes every lane meet one face.
+    #[inline(always)]
+    pub fn one(face: &Face) -> Self {
+        Self {
+            kind: face.kind,
+            center: splat_each(face.center),
+            radius: L::splat(face.radius),
+            per_radius: L::splat(face.per_radius),
+            equation: L::splat(f64::from(face.equation)),
+        }
+    }
+
+    /// Makes the lanes of the mask meet another sphere.
+    #[inline(always)]
+    pub fn but(self, mask: L::Mask, face: &Face) -> Self {
+        let other = Self::one(face);
+        Self {
+            kind: self.kind,
+            center: [
+                L::select(mask, other.center[0], self.center[0]),
+                L::select(mask, other.center[1], self.center[1]),
+                L::select(mask, other.center[2], self.center[2]),
+            ],
+            radius: L::select(mask, other.radius, self.radius),
+            per_radius: L::select(mask, other.per_radius, self.per_radius),
+            equation: L::select(mask, other.equation, self.equation),
+        }
+    }
+}
+
 /// Works out the points where a packet of reflected rays meets one face, and how far they are off; returns them with the
 /// lanes of which too little is known.
 #[inline(always)]
 pub(super) fn points<L: Lanes>(
     bounds: &Bounds,
-    face: &Face,
+    met: &Met<L>,
     rays: &Rays<L>,
     t: L,
     lanes: L::Mask,
@@ -336,23 +377,23 @@ pub(super) fn points<L: Lanes>(
     let zero = L::splat(0.0);
     let [x, y, z] =
         [rays.origin[0] + rays.dir[0] * t, rays.origin[1] + rays.dir[1] * t, rays.origin[2] + rays.dir[2] * t];
-    let per_radius = L::splat(face.per_radius);
-    let nx = (x - L::splat(face.center[0])) * per_radius;
-    let nz = (z - L::splat(face.center[2])) * per_radius;
-    let (point, normal) = match face.kind {
-        FaceKind::Sphere => ([x, y, z], [nx, (y - L::splat(face.center[1])) * per_radius, nz]),
+    let per_radius = met.per_radius;
+    let nx = (x - met.center[0]) * per_radius;
+    let nz = (z - met.center[2]) * per_radius;
+    let (point, normal) = match met.kind {
+        FaceKind::Sphere => ([x, y, z], [nx, (y - met.center[1]) * per_radius, nz]),
         FaceKind::Wall => ([x, y, z], [nx, zero, nz]),
-        FaceKind::LowerCap => ([x, L::splat(face.center[1]), z], [zero, L::splat(-1.0), zero]),
-        FaceKind::UpperCap => ([x, L::splat(face.center[1]), z], [zero, L::splat(1.0), zero]),
+        FaceKind::LowerCap => ([x, met.center[1], z], [zero, L::splat(-1.0), zero]),
+        FaceKind::UpperCap => ([x, met.center[1], z], [zero, L::splat(1.0), zero]),
     };
     let cosine = -dot(normal, rays.dir);
     let lengths = x.abs() + y.abs() + z.abs() + t;
     let passes_within = rays.origin_error + t * rays.dir_error + lengths * L::splat(8.0 * U);
-    let is_curved = matches!(face.kind, FaceKind::Sphere | FaceKind::Wall);
+    let is_curved = matches!(met.kind, FaceKind::Sphere | FaceKind::Wall);
     let (point_error, normal_error, length_error, vague) = if is_curved {
         // | |n|² − 1 | / 2, with what the normal's own roundings hide.
         let length_error = (dot(normal, normal) - L::splat(1.0)).abs() * L::splat(0.5) + L::splat(8.0 * U);
-        let off_surface = length_error * L::splat(face.radius);
+        let off_surface = length_error * met.radius;
         let point_error = (passes_within + off_surface) / cosine * L::splat(1.06);
         let normal_error = point_error * per_radius.abs() + L::splat(4.0 * U);
         let is_known = cosine.gt(L::splat(MIN_COSINE)) & normal_error.lt(cosine * L::splat(1.0 / 64.0));
@@ -366,14 +407,13 @@ pub(super) fn points<L: Lanes>(
     let is_small = point_error.lt(L::splat(bounds.size / 1024.0)) & rays.dir_error.lt(L::splat(1.0 / 256.0));
     let vague = vague | (lanes & !is_small);
     let active = lanes & !vague;
-    let dir_error = rays.dir_error;
-    (Points { point, normal, view, point_error, normal_error, length_error, dir_error, active }, vague)
+    let (dir_error, equation) = (rays.dir_error, met.equation);
+    (Points { point, normal, view, point_error, normal_error, length_error, dir_error, equation, active }, vague)
 }
 
 /// Returns the rays that leave a packet of hits on a mirror, given the rays that met it.
 #[inline(always)]
 pub(super) fn reflect<L: Lanes>(
-    face: &Face,
     terms: &Terms,
     at: &Points<L>,
     local: &Colors<L>,
@@ -401,7 +441,7 @@ pub(super) fn reflect<L: Lanes>(
         dir,
         origin_error: at.point_error,
         dir_error,
-        leaving: L::splat(f64::from(face.equation)),
+        leaving: at.equation,
         sum,
         ceiling,
         weight: weight * L::splat(terms.reflectance),

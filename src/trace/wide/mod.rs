@@ -28,7 +28,7 @@ use crate::trace::pixel::Sampling;
 
 use self::bounds::{Bounds, Face, FaceKind};
 use self::eye::{EyeRays, Nearest, RowSphere};
-use self::mirror::{Queue, Rays};
+use self::mirror::{Met, Queue, Rays};
 use self::shade::{Colors, Points};
 use self::shadow::LightOccluders;
 
@@ -71,7 +71,7 @@ pub(super) struct Scratch {
     t: Vec<f64>,
     hits: Vec<PacketHit>,
     rows: Vec<RowSphere>,
-    /// For each face what can hide the lights from it, once it is met.
+    /// For each face, and then for each group, what can hide the lights from it, once it is met.
     occluders: Vec<Option<LightOccluders>>,
     waiting: Queue,
     next: Queue,
@@ -115,7 +115,7 @@ impl Wide {
             t: vec![0.0; TILE_PIXELS],
             hits: Vec::new(),
             rows: Vec::new(),
-            occluders: vec![None; self.bounds.faces.len()],
+            occluders: vec![None; self.bounds.faces.len() + self.bounds.groups.len()],
             waiting: Queue::new(),
             next: Queue::new(),
             counts: Counts::default(),
@@ -284,7 +284,7 @@ impl TileJob<'_> {
             let face = &self.wide.bounds.faces[face as usize];
             let terms = &self.wide.bounds.terms[face.surface];
             let at = self.points::<L>(face, packet, lanes);
-            let colors = self.local::<L>(face, &at);
+            let colors = self.local::<L>(face, false, &at);
             self.mark_slow::<L>(packet, lanes & colors.doubt);
             let sure = lanes & !colors.doubt;
             if terms.reflectance > 0.0 {
@@ -325,16 +325,20 @@ impl TileJob<'_> {
         }
         let dir_error = L::splat(2.0 * self.wide.bounds.eye_roundoff);
         let length_error = normal_error * L::splat(0.5);
-        Points { point, normal, view, point_error, normal_error, length_error, dir_error, active }
+        let equation = L::splat(f64::from(face.equation));
+        Points { point, normal, view, point_error, normal_error, length_error, dir_error, equation, active }
     }
 
-    /// Shades a packet of hits without their reflections.
+    /// Shades a packet of hits without their reflections, on one face or, if it is shared, on those of its group.
     #[inline(always)]
-    fn local<L: Lanes>(&mut self, face: &Face, at: &Points<L>) -> Colors<L> {
+    fn local<L: Lanes>(&mut self, face: &Face, is_shared: bool, at: &Points<L>) -> Colors<L> {
         let bounds = &self.wide.bounds;
-        let face_idx = face_index(bounds, face);
-        let slot = &mut self.scratch.occluders[face_idx];
-        let occluders = slot.get_or_insert_with(|| LightOccluders::new(bounds, self.plan, face));
+        let shared = face.group.filter(|_| is_shared).map(|group| group as usize);
+        let slot = shared.map_or_else(|| face_index(bounds, face), |group| bounds.faces.len() + group);
+        let occluders = self.scratch.occluders[slot].get_or_insert_with(|| match shared {
+            Some(group) => LightOccluders::of_group(bounds, self.plan, &bounds.groups[group]),
+            None => LightOccluders::new(bounds, self.plan, face),
+        });
         let colors = shade::shade(bounds, &bounds.terms[face.surface], occluders, at);
         self.scratch.counts.shadow_rays += u64::from(colors.shadow_rays);
         colors
@@ -348,7 +352,7 @@ impl TileJob<'_> {
             self.mark_places(rays.pixel, lanes);
             return;
         }
-        let reflected = mirror::reflect(face, terms, at, colors, rays);
+        let reflected = mirror::reflect(terms, at, colors, rays);
         self.scratch.counts.reflected_rays += u64::from(lanes.bits().count_ones());
         self.scratch.waiting.push(&reflected, lanes);
     }
@@ -387,24 +391,45 @@ impl TileJob<'_> {
         nearest.face.store(&mut faces);
         let mut rest = met.bits();
         while rest != 0 {
-            let face = faces[rest.trailing_zeros() as usize];
-            let lanes = nearest.face.eq(L::splat(face)).bits() & rest;
+            let number = faces[rest.trailing_zeros() as usize];
+            let face = &bounds.faces[number as usize];
+            let mut lanes = nearest.face.eq(L::splat(number)).bits() & rest;
             rest &= !lanes;
-            self.shade_reflected(face as usize, rays, nearest.t, L::Mask::from_bits(lanes), level);
+            let mut hit = Met::one(face);
+            let (mut others, mut is_shared) = (if face.group.is_some() { rest } else { 0 }, false);
+            while others != 0 {
+                let number = faces[others.trailing_zeros() as usize];
+                let other = &bounds.faces[number as usize];
+                let its_lanes = nearest.face.eq(L::splat(number)).bits() & others;
+                others &= !its_lanes;
+                if other.group == face.group {
+                    hit = hit.but(L::Mask::from_bits(its_lanes), other);
+                    lanes |= its_lanes;
+                    rest &= !its_lanes;
+                    is_shared = true;
+                }
+            }
+            let (at, vague) = mirror::points(bounds, &hit, rays, nearest.t, L::Mask::from_bits(lanes));
+            self.mark_places(rays.pixel, vague);
+            self.shade_reflected(face, is_shared, rays, &at, level);
         }
     }
 
-    /// Shades the hits of reflected rays on one face, and sends them on if it is a mirror.
+    /// Shades the hits of reflected rays, and sends them on from mirrors.
     #[inline(always)]
-    fn shade_reflected<L: Lanes>(&mut self, face: usize, rays: &Rays<L>, t: L, lanes: L::Mask, level: u32) {
-        let face = &self.wide.bounds.faces[face];
-        let (at, vague) = mirror::points(&self.wide.bounds, face, rays, t, lanes);
-        self.mark_places(rays.pixel, vague);
-        let colors = self.local(face, &at);
+    fn shade_reflected<L: Lanes>(
+        &mut self,
+        face: &Face,
+        is_shared: bool,
+        rays: &Rays<L>,
+        at: &Points<L>,
+        level: u32,
+    ) {
+        let colors = self.local(face, is_shared, at);
         self.mark_places(rays.pixel, at.active & colors.doubt);
         let sure = at.active & !colors.doubt;
         if self.wide.bounds.terms[face.surface].reflectance > 0.0 {
-            self.send_on(face, &at, &colors, rays, sure);
+            self.send_on(face, at, &colors, rays, sure);
         } else {
             self.finish(rays, colors.color, colors.error, sure, level);
         }

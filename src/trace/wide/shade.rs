@@ -40,6 +40,8 @@ pub(super) struct Points<L: Lanes> {
     /// How far the computed normal is from unit length.
     pub length_error: L,
     pub dir_error: L,
+    /// The number of the equation of what is met.
+    pub equation: L,
     /// The lanes that there are.
     pub active: L::Mask,
 }

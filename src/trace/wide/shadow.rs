@@ -21,6 +21,8 @@ pub(super) struct LightOccluders {
     lists: Vec<[Vec<u32>; 2]>,
     /// For each light whether it is hidden from all of the face.
     hidden: Vec<bool>,
+    /// Whether spheres may be among their own occluders, which is then seen lane by lane.
+    is_shared: bool,
 }
 
 impl LightOccluders {
@@ -30,7 +32,7 @@ impl LightOccluders {
     pub fn new(bounds: &Bounds, plan: &Plan<'_>, face: &Face) -> Self {
         if plan.settings.part == Part::A {
             let n_lights = bounds.lights.len();
-            return Self { lists: vec![Default::default(); n_lights], hidden: vec![false; n_lights] };
+            return Self { lists: vec![Default::default(); n_lights], hidden: vec![false; n_lights], is_shared: false };
         }
         let side = |light_idx: usize, i: u32| bounds.lights[light_idx].spheres[i as usize].side;
         let hidden = (0..bounds.lights.len())
@@ -55,7 +57,24 @@ impl LightOccluders {
                 [spheres, cylinders]
             })
             .collect();
-        Self { lists, hidden }
+        Self { lists, hidden, is_shared: false }
+    }
+}
+
+impl LightOccluders {
+    /// Collects what can hide each light from one of several spheres.
+    pub fn of_group(bounds: &Bounds, plan: &Plan<'_>, faces: &[u32]) -> Self {
+        let members: Vec<_> = faces.iter().map(|&face| Self::new(bounds, plan, &bounds.faces[face as usize])).collect();
+        let union = |light_idx: usize, kind: usize| {
+            let mut all: Vec<_> = members.iter().flat_map(|member| member.lists[light_idx][kind].clone()).collect();
+            all.sort_unstable();
+            all.dedup();
+            all
+        };
+        let n_lights = bounds.lights.len();
+        let hidden = (0..n_lights).map(|i| members.iter().all(|member| member.hidden[i])).collect();
+        let lists = (0..n_lights).map(|i| [union(i, 0), union(i, 1)]).collect();
+        Self { lists, hidden, is_shared: true }
     }
 }
 
@@ -105,7 +124,10 @@ pub(super) fn shadow<L: Lanes>(
         let b = w[0] * L::splat(sphere.m[0]) + w[1] * L::splat(sphere.m[1]) + w[2] * L::splat(sphere.m[2]);
         let discriminant = b * b - a * L::splat(sphere.power);
         let slack = tau * L::splat(sphere.slack);
-        let near = open & discriminant.ge(-slack);
+        let mut near = open & discriminant.ge(-slack);
+        if occluders.is_shared {
+            near = near & !at.equation.eq(L::splat(sphere.equation));
+        }
         if near.any() {
             let (blocked, doubt) = behind_sphere(sphere, &segment, b, discriminant, slack);
             vague = vague | (near & doubt);
