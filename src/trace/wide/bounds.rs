@@ -503,7 +503,10 @@ fn seen_from(scene: &Scene<'_>, light: &Light) -> WideLight {
             (_, true, true) => Side::Open,
             (false, false, _) => Side::Unknown,
         };
-        Occluder { equation: f64::from(scene.sphere_equations[i].number()), ..occluder(m, power, s.radius[i], [0.0; 2], side) }
+        Occluder {
+            equation: f64::from(scene.sphere_equations[i].number()),
+            ..occluder(m, power, s.radius[i], [0.0; 2], side)
+        }
     };
     let cylinder = |i: usize| {
         let m = [DoubleDouble::sum(c.x[i], -x), DoubleDouble::ZERO, DoubleDouble::sum(c.z[i], -z)];

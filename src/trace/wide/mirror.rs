@@ -18,7 +18,6 @@
 
 use crate::plan::Object;
 use crate::trace::kernels::{Lanes, Mask};
-use crate::trace::wide::TILE_PIXELS;
 use crate::trace::wide::bounds::{Bounds, Face, FaceKind, MIN_CAP_COSINE, MIN_COSINE, Terms, U};
 use crate::trace::wide::eye::{MAX_LANES, Nearest};
 use crate::trace::wide::shade::{Colors, Points, dot, splat_each};
@@ -44,36 +43,34 @@ pub(super) struct Rays<L: Lanes> {
     pub error: L,
     /// The place in the tile.
     pub pixel: L,
+    /// How many mirrors lie before it.
+    pub level: L,
 }
 
 /// How many numbers there are for each ray.
-const N_NUMBERS: usize = 18;
+const N_NUMBERS: usize = 19;
 
-/// For how many rays there is room: packets are written and read as a whole, whatever number of rays is in them.
-const CAPACITY: usize = TILE_PIXELS + 2 * MAX_LANES;
+/// For how many rays there is room. Rays are taken out as soon as they fill a packet, and a packet puts in no more than it
+/// took out; packets are written and read as a whole, whatever number of rays is in them.
+const CAPACITY: usize = 4 * MAX_LANES;
 
-/// Reflected rays that wait to be traced, number by number.
+/// Reflected rays that wait to be traced, number by number; the last to come is the first to go, so that they stay in the
+/// nearest cache.
 #[derive(Clone, Debug)]
-pub(super) struct Queue {
+pub(super) struct Waiting {
     len: usize,
-    numbers: Box<[[f64; CAPACITY]; N_NUMBERS]>,
+    numbers: [[f64; CAPACITY]; N_NUMBERS],
 }
 
-impl Queue {
-    /// Makes an empty queue.
+impl Waiting {
+    /// Makes room in which no ray waits.
     pub fn new() -> Self {
-        let numbers = vec![[0.0; CAPACITY]; N_NUMBERS].into_boxed_slice();
-        Self { len: 0, numbers: numbers.try_into().expect("as many as were made") }
+        Self { len: 0, numbers: [[0.0; CAPACITY]; N_NUMBERS] }
     }
 
     /// Returns how many rays there are.
     pub fn len(&self) -> usize {
         self.len
-    }
-
-    /// Takes all rays out.
-    pub fn clear(&mut self) {
-        self.len = 0;
     }
 
     /// Adds the rays of the mask.
@@ -82,6 +79,7 @@ impl Queue {
         let ([ox, oy, oz], [dx, dy, dz]) = (rays.origin, rays.dir);
         let ([ar, ag, ab], [hr, hg, hb]) = (rays.sum, rays.ceiling);
         let numbers: [L; N_NUMBERS] = [
+            rays.level,
             ox,
             oy,
             oz,
@@ -101,21 +99,50 @@ impl Queue {
             rays.error,
             rays.pixel,
         ];
+        let n_rays = mask.bits().count_ones() as usize;
+        let end = self.len;
+        assert!(end + L::N <= CAPACITY);
         for k in 0..N_NUMBERS {
-            numbers[k].store_packed(mask, &mut self.numbers[k][self.len..]);
+            if n_rays == L::N {
+                numbers[k].store(&mut self.numbers[k][end..]);
+            } else {
+                numbers[k].store_packed(mask, &mut self.numbers[k][end..]);
+            }
         }
-        self.len += mask.bits().count_ones() as usize;
+        self.len += n_rays;
     }
 
-    /// Returns the packet from this ray on, and which of its lanes hold a ray.
+    /// Takes out the last packet, and tells which of its lanes hold a ray.
     #[inline(always)]
-    pub fn packet<L: Lanes>(&self, first: usize) -> (Rays<L>, L::Mask) {
+    pub fn pop<L: Lanes>(&mut self) -> (Rays<L>, L::Mask) {
+        let n_rays = self.len.min(L::N);
+        self.len -= n_rays;
+        let first = self.len;
         let mut numbers = [L::splat(0.0); N_NUMBERS];
         for k in 0..N_NUMBERS {
             numbers[k] = L::load(&self.numbers[k][first..]);
         }
-        let [ox, oy, oz, dx, dy, dz, origin_error, dir_error, leaving, ar, ag, ab, hr, hg, hb, weight, error, pixel] =
-            numbers;
+        let [
+            level,
+            ox,
+            oy,
+            oz,
+            dx,
+            dy,
+            dz,
+            origin_error,
+            dir_error,
+            leaving,
+            ar,
+            ag,
+            ab,
+            hr,
+            hg,
+            hb,
+            weight,
+            error,
+            pixel,
+        ] = numbers;
         let rays = Rays {
             origin: [ox, oy, oz],
             dir: [dx, dy, dz],
@@ -127,8 +154,8 @@ impl Queue {
             weight,
             error,
             pixel,
+            level,
         };
-        let n_rays = (self.len - first).min(L::N);
         (rays, L::Mask::from_bits((1 << n_rays) - 1))
     }
 }
@@ -413,12 +440,7 @@ pub(super) fn points<L: Lanes>(
 
 /// Returns the rays that leave a packet of hits on a mirror, given the rays that met it.
 #[inline(always)]
-pub(super) fn reflect<L: Lanes>(
-    terms: &Terms,
-    at: &Points<L>,
-    local: &Colors<L>,
-    rays: &Rays<L>,
-) -> Rays<L> {
+pub(super) fn reflect<L: Lanes>(terms: &Terms, at: &Points<L>, local: &Colors<L>, rays: &Rays<L>) -> Rays<L> {
     let twice = dot(at.normal, at.view) * L::splat(2.0);
     let dir = [at.normal[0] * twice - at.view[0], at.normal[1] * twice - at.view[1], at.normal[2] * twice - at.view[2]];
     let dir_error = at.dir_error * L::splat(1.001)
@@ -447,14 +469,15 @@ pub(super) fn reflect<L: Lanes>(
         weight: weight * L::splat(terms.reflectance),
         error: rays.error + weight * local.error,
         pixel: rays.pixel,
+        level: rays.level + L::splat(1.0),
     }
 }
 
 /// Returns the colour of the pixels whose last rays found `color`, and its error.
 ///
-/// `n_levels`: from the eye to there; each has lost at most eight roundings of the sum.
+/// Each level has lost at most eight roundings of the sum.
 #[inline(always)]
-pub(super) fn compose<L: Lanes>(rays: &Rays<L>, color: [L; 3], error: L, n_levels: u32) -> ([L; 3], L) {
+pub(super) fn compose<L: Lanes>(rays: &Rays<L>, color: [L; 3], error: L) -> ([L; 3], L) {
     let (zero, one) = (L::splat(0.0), L::splat(1.0));
     let mut channels = color;
     let mut largest = one;
@@ -462,6 +485,6 @@ pub(super) fn compose<L: Lanes>(rays: &Rays<L>, color: [L; 3], error: L, n_level
         channels[k] = (rays.sum[k] + rays.weight * color[k].min(one).max(zero)).min(rays.ceiling[k]);
         largest = largest.max(rays.sum[k] + rays.weight);
     }
-    let rounding = largest * L::splat(8.0 * U * f64::from(n_levels + 2));
+    let rounding = largest * (rays.level + L::splat(2.0)) * L::splat(8.0 * U);
     (channels, rays.error + rays.weight * error + rounding)
 }

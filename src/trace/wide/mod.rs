@@ -1,7 +1,7 @@
 //! The wide tracer: packets of pixels in plain binary64, with bounds that are known beforehand.
 //!
 //! A tile goes through three stages. Its eye rays find what they meet first ([`eye`]); the hits are shaded, face by face
-//! ([`shade`], [`shadow`]); mirrors send rays on, which wait in a queue and are traced level by level ([`mirror`]). The
+//! ([`shade`], [`shadow`]); mirrors send rays on, which wait until they fill a packet ([`mirror`]). The
 //! bounds on all errors are worked out once for an image ([`bounds`]), where they can be, and carried with the rays where
 //! not. A pixel of which every comparison and the rounding of every channel is decided beyond them is the pixel that
 //! exact arithmetic gives. Every other pixel is left to `pixel::settle`: silhouettes, edges of shadows, colours at a step,
@@ -28,7 +28,7 @@ use crate::trace::pixel::Sampling;
 
 use self::bounds::{Bounds, Face, FaceKind};
 use self::eye::{EyeRays, Nearest, RowSphere};
-use self::mirror::{Met, Queue, Rays};
+use self::mirror::{Met, Rays, Waiting};
 use self::shade::{Colors, Points};
 use self::shadow::LightOccluders;
 
@@ -73,8 +73,7 @@ pub(super) struct Scratch {
     rows: Vec<RowSphere>,
     /// For each face, and then for each group, what can hide the lights from it, once it is met.
     occluders: Vec<Option<LightOccluders>>,
-    waiting: Queue,
-    next: Queue,
+    waiting: Waiting,
     pub counts: Counts,
 }
 
@@ -116,8 +115,7 @@ impl Wide {
             hits: Vec::new(),
             rows: Vec::new(),
             occluders: vec![None; self.bounds.faces.len() + self.bounds.groups.len()],
-            waiting: Queue::new(),
-            next: Queue::new(),
+            waiting: Waiting::new(),
             counts: Counts::default(),
         }
     }
@@ -202,9 +200,7 @@ impl Job for TileJob<'_> {
         }
         self.meet::<L>(among);
         self.scratch.hits.sort_unstable_by_key(|hit| (hit.face, hit.packet));
-        self.scratch.waiting.clear();
         self.shade::<L>();
-        self.follow::<L>();
     }
 }
 
@@ -278,22 +274,35 @@ impl TileJob<'_> {
     /// Shades what eye rays have met, and sends on the rays of mirrors.
     #[inline(always)]
     fn shade<L: Lanes>(&mut self) {
-        for hit_idx in 0..self.scratch.hits.len() {
-            let PacketHit { face, packet, lanes } = self.scratch.hits[hit_idx];
-            let (packet, lanes) = (packet as usize, L::Mask::from_bits(lanes));
-            let face = &self.wide.bounds.faces[face as usize];
-            let terms = &self.wide.bounds.terms[face.surface];
-            let at = self.points::<L>(face, packet, lanes);
-            let colors = self.local::<L>(face, false, &at);
-            self.mark_slow::<L>(packet, lanes & colors.doubt);
-            let sure = lanes & !colors.doubt;
-            if terms.reflectance > 0.0 {
-                self.send_on(face, &at, &colors, &eye_rays(packet), sure);
+        let n_hits = self.scratch.hits.len();
+        let mut hit_idx = 0;
+        while hit_idx < n_hits || self.scratch.waiting.len() > 0 {
+            // Mirrors' rays go first, as soon as there is a packet of them, or nothing else.
+            if self.scratch.waiting.len() >= if hit_idx < n_hits { L::N } else { 1 } {
+                self.follow_packet::<L>();
             } else {
-                let (bytes, proved) = shade::quantise(colors.color, colors.error);
-                bytes.store_whole(sure & proved, &mut self.scratch.pixels[packet * L::N..]);
-                self.mark_slow::<L>(packet, sure & !proved);
+                self.shade_packet::<L>(self.scratch.hits[hit_idx]);
+                hit_idx += 1;
             }
+        }
+    }
+
+    /// Shades a packet of hits of eye rays.
+    #[inline(always)]
+    fn shade_packet<L: Lanes>(&mut self, hit: PacketHit) {
+        let (packet, lanes) = (hit.packet as usize, L::Mask::from_bits(hit.lanes));
+        let face = &self.wide.bounds.faces[hit.face as usize];
+        let terms = &self.wide.bounds.terms[face.surface];
+        let at = self.points::<L>(face, packet, lanes);
+        let colors = self.local::<L>(face, false, &at);
+        self.mark_slow::<L>(packet, lanes & colors.doubt);
+        let sure = lanes & !colors.doubt;
+        if terms.reflectance > 0.0 {
+            self.send_on(face, &at, &colors, &eye_rays(packet), sure);
+        } else {
+            let (bytes, proved) = shade::quantise(colors.color, colors.error);
+            bytes.store_whole(sure & proved, &mut self.scratch.pixels[packet * L::N..]);
+            self.mark_slow::<L>(packet, sure & !proved);
         }
     }
 
@@ -303,8 +312,13 @@ impl TileJob<'_> {
         let (dx, dy) = self.directions::<L>(packet);
         let t = L::load(&self.scratch.t[packet * L::N..]);
         let (dy, zero, one) = (L::splat(dy), L::splat(0.0), L::splat(1.0));
-        let per_length = one / (dx * dx + (dy * dy + one)).sqrt();
-        let view = [-(dx * per_length), -(dy * per_length), per_length];
+        let terms = &self.wide.bounds.terms[face.surface];
+        let is_mirror = terms.reflectance > 0.0;
+        let mut view = [zero; 3];
+        if terms.has_specular || is_mirror || face.is_vague {
+            let per_length = one / (dx * dx + (dy * dy + one)).sqrt();
+            view = [-(dx * per_length), -(dy * per_length), per_length];
+        }
         let [x, y, z] = [dx * t, dy * t, -t];
         let per_radius = L::splat(face.per_radius);
         let [cx, cy, cz] = face.center;
@@ -315,7 +329,6 @@ impl TileJob<'_> {
             FaceKind::LowerCap => ([x, L::splat(cy), z], [zero, L::splat(-1.0), zero]),
             FaceKind::UpperCap => ([x, L::splat(cy), z], [zero, one, zero]),
         };
-        let is_mirror = self.wide.bounds.terms[face.surface].reflectance > 0.0;
         let mut point_error = L::splat(face.eye_point_error);
         let mut normal_error = L::splat(face.eye_normal_error);
         if face.is_vague || (is_mirror && matches!(face.kind, FaceKind::Sphere | FaceKind::Wall)) {
@@ -357,23 +370,11 @@ impl TileJob<'_> {
         self.scratch.waiting.push(&reflected, lanes);
     }
 
-    /// Follows the rays that wait, level by level.
+    /// Follows the last packet of the rays that wait.
     #[inline(always)]
-    fn follow<L: Lanes>(&mut self) {
-        let mut level = 1;
-        while self.scratch.waiting.len() > 0 {
-            std::mem::swap(&mut self.scratch.waiting, &mut self.scratch.next);
-            self.scratch.waiting.clear();
-            for first in (0..self.scratch.next.len()).step_by(L::N) {
-                let (rays, active) = self.scratch.next.packet::<L>(first);
-                self.follow_packet(&rays, active, level);
-            }
-            level += 1;
-        }
-    }
-
-    #[inline(always)]
-    fn follow_packet<L: Lanes>(&mut self, rays: &Rays<L>, active: L::Mask, level: u32) {
+    fn follow_packet<L: Lanes>(&mut self) {
+        let (rays, active) = self.scratch.waiting.pop::<L>();
+        let rays = &rays;
         let bounds = &self.wide.bounds;
         let among = self.plan.mirrored();
         self.scratch.counts.tests += among.len() as u64 * u64::from(active.bits().count_ones());
@@ -382,11 +383,10 @@ impl TileJob<'_> {
         let sure = active & !nearest.doubt;
         let met = sure & nearest.met();
         let zero = L::splat(0.0);
-        self.finish(rays, shade::splat_each(self.plan.scene.background.to_array()), zero, sure & !met, level);
-        if level > self.plan.settings.max_level {
-            self.finish(rays, [zero; 3], zero, met, level);
-            return;
-        }
+        self.finish(rays, shade::splat_each(self.plan.scene.background.to_array()), zero, sure & !met);
+        let beyond = met & rays.level.gt(L::splat(f64::from(self.plan.settings.max_level)));
+        self.finish(rays, [zero; 3], zero, beyond);
+        let met = met & !beyond;
         let mut faces = [0.0; eye::MAX_LANES];
         nearest.face.store(&mut faces);
         let mut rest = met.bits();
@@ -411,37 +411,30 @@ impl TileJob<'_> {
             }
             let (at, vague) = mirror::points(bounds, &hit, rays, nearest.t, L::Mask::from_bits(lanes));
             self.mark_places(rays.pixel, vague);
-            self.shade_reflected(face, is_shared, rays, &at, level);
+            self.shade_reflected(face, is_shared, rays, &at);
         }
     }
 
     /// Shades the hits of reflected rays, and sends them on from mirrors.
     #[inline(always)]
-    fn shade_reflected<L: Lanes>(
-        &mut self,
-        face: &Face,
-        is_shared: bool,
-        rays: &Rays<L>,
-        at: &Points<L>,
-        level: u32,
-    ) {
+    fn shade_reflected<L: Lanes>(&mut self, face: &Face, is_shared: bool, rays: &Rays<L>, at: &Points<L>) {
         let colors = self.local(face, is_shared, at);
         self.mark_places(rays.pixel, at.active & colors.doubt);
         let sure = at.active & !colors.doubt;
         if self.wide.bounds.terms[face.surface].reflectance > 0.0 {
             self.send_on(face, at, &colors, rays, sure);
         } else {
-            self.finish(rays, colors.color, colors.error, sure, level);
+            self.finish(rays, colors.color, colors.error, sure);
         }
     }
 
     /// Settles the pixels of rays that have found their colour.
     #[inline(always)]
-    fn finish<L: Lanes>(&mut self, rays: &Rays<L>, color: [L; 3], error: L, lanes: L::Mask, level: u32) {
+    fn finish<L: Lanes>(&mut self, rays: &Rays<L>, color: [L; 3], error: L, lanes: L::Mask) {
         if !lanes.any() {
             return;
         }
-        let (color, error) = mirror::compose(rays, color, error, level);
+        let (color, error) = mirror::compose(rays, color, error);
         let (bytes, proved) = shade::quantise(color, error);
         self.mark_places(rays.pixel, lanes & !proved);
         let (mut places, mut found) = ([0.0; eye::MAX_LANES], [0; eye::MAX_LANES]);
@@ -508,5 +501,6 @@ fn eye_rays<L: Lanes>(packet: usize) -> Rays<L> {
         weight: one,
         error: zero,
         pixel: lanes + L::splat((packet * L::N) as f64),
+        level: zero,
     }
 }
