@@ -129,6 +129,7 @@ fn every_stage_can_be_shown() {
         ("ast", "5:1  sphere x=0.0 y=0.0 z=-4.0 radius=1.0"),
         ("ir", "#0  center 0.0 0.0 -4.0  radius 1.0  surface #0  order 0  equation 0  ; line 5"),
         ("commands", "   4  write       \"a.png\""),
+        ("plan", "write 0  \"a.png\"  300x300  fov 60.0  ; line 6"),
     ] {
         let call = folder.clisc(&["ir", "a.cli", "--emit", stage]);
         assert_eq!((call.code, call.stderr.as_str()), (Some(0), ""));
@@ -142,7 +143,7 @@ fn every_stage_can_be_shown() {
 #[test]
 fn a_bad_scene_has_tokens_and_a_tree_but_no_program() {
     let folder = Folder::with_scene(BAD);
-    for (stage, is_shown) in [("tokens", true), ("ast", true), ("ir", false), ("commands", false)] {
+    for (stage, is_shown) in [("tokens", true), ("ast", true), ("ir", false), ("commands", false), ("plan", false)] {
         let call = folder.clisc(&["ir", "a.cli", "--emit", stage]);
         assert_eq!(call.code, Some(1));
         assert_eq!(!call.stdout.is_empty(), is_shown, "{stage}: {}", call.stdout);

@@ -17,7 +17,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("ir", &["math", "source"]),
     ("lower", &["syntax", "ir", "diag", "source", "math"]),
     ("compile", &["source", "diag", "syntax", "lower", "ir"]),
-    ("plan", &["ir", "math"]),
+    ("plan", &["ir", "math", "source"]),
     ("trace", &["ir", "plan", "math", "image"]),
     ("exec", &["ir", "plan", "trace", "image", "diag"]),
     ("testing", &["source", "diag", "math", "image", "syntax", "ir", "lower", "compile", "plan", "trace", "exec"]),

@@ -4,7 +4,9 @@ mod families;
 
 use clisc::compile;
 use clisc::ir::{self, Registers, SceneView, Valid};
-use clisc::plan::{Object, Part, Pass, Passes, Reason, SampleAt, Settings, Size, plan};
+use clisc::plan::{
+    Changes, Object, Part, Pass, Passes, Reason, SampleAt, Settings, Size, dump_plans, dump_plans_json, plan,
+};
 use clisc::source::Source;
 use clisc::testing::Stream;
 use clisc::trace::{Counts, Tracer};
@@ -241,4 +243,111 @@ fn fewer_rays_and_tests_are_made() {
     let (plain, plain_counts) = render(view(&program), &settings(Passes::none()));
     assert!(image == plain);
     assert!(counts.tests < plain_counts.tests, "{counts:?} and {plain_counts:?}");
+}
+
+/// A scene with something for every pass.
+const FOR_THE_DUMP: &str = "\
+fov 60
+background .2 .3 .4
+light .9 .9 .9  5 9 2
+light 0 0 0  1 1 1
+light .5 0 0  -4 3 0
+surface .1 .1 .1  .8 .7 .6  0 0 0  1 0
+cylinder 9  0 -5  -3 -1
+surface .1 0 0  .5 .1 .1  .3 .3 .3  20 .4
+sphere -1 0 -5  1
+sphere -1 0 -5  1
+surface 0 0 .1  0 .2 .9  .2 .2 .2  2.5 0
+sphere 1.5 -.25 -5  .75
+sphere 1.5 -.25 -5  .5
+sphere 0 30 -2  1
+surface 1 1 1  .2 .2 .2  0 0 0  0 0
+cylinder .25  .2 -3  -1 -.5
+write first.png
+light 0 0 0  3 3 3
+write same.png
+sphere 0 0 40 1
+write mirrored.png
+fov 30
+write near.png
+background 0 0 0
+";
+
+#[test]
+fn dumps_keep_their_shape() {
+    let source = Source::new("dump.cli", FOR_THE_DUMP);
+    let program = ir::validate(compile(&source).program).expect("a sound program");
+    let settings = Settings { size: Size::new(320, 240).expect("a size"), ..Settings::default() };
+    let mut text = Vec::new();
+    dump_plans(&source, &program, &settings, &mut text).expect("written to memory");
+    insta::assert_snapshot!("dump", String::from_utf8(text).expect("text"));
+    let mut json = Vec::new();
+    dump_plans_json(&source, &program, &settings, &mut json).expect("written to memory");
+    let json = String::from_utf8(json).expect("text");
+    let document: serde_json::Value = serde_json::from_str(&json).expect("one document");
+    assert_eq!(document["version"], 1);
+    assert_eq!(document["writes"].as_array().expect("a list").len(), 4);
+    insta::assert_snapshot!("dump_json", json);
+    let mut off = Vec::new();
+    let none = Settings { passes: Passes::none(), ..settings };
+    dump_plans(&source, &program, &none, &mut off).expect("written to memory");
+    insta::assert_snapshot!("dump_off", String::from_utf8(off).expect("text"));
+}
+
+/// A scene that grows: every object and light is followed by a `write`.
+fn growing(sketch: &Sketch) -> Valid {
+    let text = sketch.text();
+    let mut lines: Vec<_> = Vec::new();
+    for line in text.lines().filter(|line| !line.starts_with("write")) {
+        lines.push(line);
+        if ["light", "sphere", "cylinder"].iter().any(|name| line.starts_with(name)) {
+            lines.push("write a.png");
+        }
+    }
+    let compilation = compile(&Source::new("growing.cli", lines.join("\n")));
+    assert!(!compilation.has_errors());
+    ir::validate(compilation.program).expect("a sound program")
+}
+
+/// Checks that what a later image is said to share with an earlier one, it shares; returns how many pixels that is.
+fn assert_changes_hold(title: &str, program: &Valid) -> u64 {
+    let settings = settings(Passes::all());
+    let mut registers = Registers::default();
+    let mut earlier: Option<(Registers, Vec<u8>)> = None;
+    let mut n_kept = 0;
+    for command in &program.commands {
+        registers.step(command);
+        if !matches!(command, ir::Command::Write(_)) {
+            continue;
+        }
+        let view = SceneView::new(program, registers);
+        let (image, _) = render(view, &settings);
+        if let Some((before, old)) = &earlier {
+            let changes = plan(view, &settings).changes_since(before);
+            for (at, (pixel, old)) in (0..).zip(image.chunks(3).zip(old.chunks(3))) {
+                let (column, row) = (at % WIDTH, at / WIDTH);
+                let may_change = match &changes {
+                    Changes::Nothing => false,
+                    Changes::Tiles(mask) => mask.contains(column, row),
+                    Changes::Everything => true,
+                };
+                assert!(may_change || pixel == old, "{title}: pixel ({column}, {row}) changes at {registers:?}");
+                n_kept += u64::from(!may_change);
+            }
+        }
+        earlier = Some((registers, image));
+    }
+    n_kept
+}
+
+#[test]
+fn pixels_that_cannot_change_do_not() {
+    let mut n_kept = 0;
+    for family in FAMILIES {
+        n_kept += assert_changes_hold(family.name, &growing(&family.sketch(0)));
+    }
+    for seed in 0..60 {
+        n_kept += assert_changes_hold(&format!("nested seed {seed}"), &growing(&nested(seed)));
+    }
+    assert!(n_kept > 10_000, "only {n_kept} pixels are kept");
 }

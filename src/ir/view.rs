@@ -63,6 +63,12 @@ impl<'p> SceneView<'p> {
         Self { program, registers }
     }
 
+    /// Returns what the commands so far have set.
+    #[must_use]
+    pub fn registers(&self) -> &Registers {
+        &self.registers
+    }
+
     /// Returns the vertical field of view in degrees, above 0 and below 180.
     #[must_use]
     pub fn fov_deg(&self) -> f64 {

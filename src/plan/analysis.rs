@@ -95,6 +95,11 @@ impl Analysis {
         known
     }
 
+    /// Returns for each object its index in the scene as the `write` shows it.
+    pub fn names(&self) -> &[Object] {
+        &self.names
+    }
+
     /// Returns how many of the objects are spheres.
     fn n_spheres(&self) -> usize {
         self.names.iter().filter(|name| matches!(name, Object::Sphere(_))).count()

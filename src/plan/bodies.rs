@@ -70,6 +70,21 @@ impl Body for Solid {
 }
 
 impl Solid {
+    /// Returns about that point of the solid that is nearest to a point.
+    fn nearest(&self, point: DVec3) -> DVec3 {
+        match *self {
+            Self::Sphere { center, radius } => {
+                let way = point - center;
+                center + way * (radius / way.length().max(radius))
+            }
+            Self::Cylinder { x, z, radius, y_min, y_max } => {
+                let way = DVec3::new(point.x - x, 0.0, point.z - z);
+                let across = way * (radius / way.length().max(radius));
+                DVec3::new(x + across.x, point.y.clamp(y_min, y_max), z + across.z)
+            }
+        }
+    }
+
     /// Returns numbers that the lowest and the highest y are the exact sums of.
     pub fn heights(&self) -> [[f64; 2]; 2] {
         match *self {
@@ -196,7 +211,7 @@ fn finds_plane(start: &impl Body, end: Option<DVec3>, solid: &Solid) -> bool {
         let near = end.filter(|end| along.dot(*end) < along.dot(near)).unwrap_or(near);
         near - solid.lowest(-along)
     };
-    let mut nearest = start.lowest(DVec3::Y) - solid.lowest(DVec3::NEG_Y);
+    let mut nearest = first_guess(start, solid);
     for _ in 0..MAX_STEPS {
         let length = nearest.length();
         if length.is_nan() || length == 0.0 {
@@ -215,6 +230,14 @@ fn finds_plane(start: &impl Body, end: Option<DVec3>, solid: &Solid) -> bool {
         nearest += toward * share.min(1.0);
     }
     false
+}
+
+/// Returns the way to a point of `start` from the point of `solid` that is nearest to it.
+fn first_guess(start: &impl Body, solid: &Solid) -> DVec3 {
+    let anywhere = start.lowest(DVec3::Y);
+    let near = start.lowest(anywhere - solid.nearest(anywhere));
+    let way = near - solid.nearest(near);
+    if way == DVec3::ZERO { near - solid.lowest(DVec3::NEG_Y) } else { way }
 }
 
 /// Proves that a plane with this normal parts the bodies.

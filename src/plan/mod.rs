@@ -12,6 +12,7 @@ mod bodies;
 mod bounces;
 mod candidates;
 mod curve;
+mod dump;
 mod frustum;
 mod objects;
 mod passes;
@@ -24,9 +25,11 @@ mod solid;
 mod terms;
 mod tiles;
 mod tree;
+mod writes;
 
 pub use bodies::Region;
 pub use candidates::{Candidates, Object, ObjectLists};
+pub use dump::{dump_plans, dump_plans_json};
 pub use passes::{Pass, Passes};
 pub use report::{Kept, LeftOut, Reason, Report};
 pub use scene::{CylinderLanes, Light, Primitive, Scene, SphereLanes};
@@ -36,8 +39,9 @@ pub use solid::Faces;
 pub use terms::{Exponent, Terms};
 pub use tiles::Tiles;
 pub use tree::SearchRay;
+pub use writes::{Changes, TileMask};
 
-use crate::ir::{Handle, SceneView, Surface};
+use crate::ir::{Handle, Registers, SceneView, Surface};
 use crate::plan::analysis::{Analysis, analyse};
 use crate::plan::search::{AlongRays, AroundLights};
 
@@ -57,6 +61,8 @@ pub struct Plan<'p> {
     pub tiles: Tiles,
     /// What the passes have found.
     pub report: Report,
+    /// What the commands before the `write` have set.
+    registers: Registers,
     /// For each surface of the program what it needs; empty when they are too many to be kept.
     terms: Vec<Terms>,
     /// What is known of the objects, unless they are too many.
@@ -101,6 +107,7 @@ pub fn plan<'p>(view: SceneView<'p>, settings: &Settings) -> Plan<'p> {
         fov_deg: view.fov_deg(),
         tiles: Tiles::new(&scene, view.fov_deg(), settings),
         report,
+        registers: *view.registers(),
         terms,
         known,
         mirrored,

@@ -243,12 +243,16 @@ pub struct IrArgs {
     /// How to show it.
     #[arg(long, value_enum, default_value_t)]
     pub format: DumpFormat,
+    /// The images that `--emit plan` is about.
+    #[command(flatten, next_help_heading = "Options of --emit plan")]
+    pub image: ImageArgs,
 }
 
 const IR_EXAMPLES: &str = "\
 Examples:
   clisc ir i1.cli                             the command list, to be read like assembler
   clisc ir i1.cli --emit tokens
+  clisc ir i1.cli --emit plan --size 640x480  what each image needs of the scene, and what is skipped
   clisc ir i1.cli --emit ir --format json | jq";
 
 /// A stage of the compiler.
@@ -263,6 +267,8 @@ pub enum Emit {
     /// The command list of the executor.
     #[default]
     Commands,
+    /// What each image needs of the scene, and what is skipped.
+    Plan,
 }
 
 /// How `clisc ir` shows a stage.

@@ -7,6 +7,7 @@ use anyhow::Context;
 use clisc::Compilation;
 use clisc::diag::render::{Color, render_human};
 use clisc::ir::{self, Valid};
+use clisc::plan::{dump_plans, dump_plans_json};
 use clisc::source::Source;
 use clisc::syntax;
 
@@ -45,11 +46,13 @@ fn dump(
         (Emit::Tokens, DumpFormat::Json) => syntax::dump_tokens_json(source, &syntax::lex(source), out),
         (Emit::Ast, DumpFormat::Text) => syntax::dump_ast(source, &syntax::parse(source).file, out),
         (Emit::Ast, DumpFormat::Json) => syntax::dump_ast_json(source, &syntax::parse(source).file, out),
-        (Emit::Ir | Emit::Commands, _) if compilation.has_errors() => Ok(()),
+        (Emit::Ir | Emit::Commands | Emit::Plan, _) if compilation.has_errors() => Ok(()),
         (Emit::Ir, DumpFormat::Text) => ir::dump_arenas(source, &validate(compilation)?, out),
         (Emit::Ir, DumpFormat::Json) => ir::dump_arenas_json(source, &validate(compilation)?, out),
         (Emit::Commands, DumpFormat::Text) => ir::dump_commands(source, &validate(compilation)?, out),
         (Emit::Commands, DumpFormat::Json) => ir::dump_commands_json(source, &validate(compilation)?, out),
+        (Emit::Plan, DumpFormat::Text) => dump_plans(source, &validate(compilation)?, &args.image.settings(), out),
+        (Emit::Plan, DumpFormat::Json) => dump_plans_json(source, &validate(compilation)?, &args.image.settings(), out),
     })
 }
 
