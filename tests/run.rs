@@ -351,7 +351,7 @@ fn a_terminal_gets_colours_and_a_bar_for_what_takes_time() {
     let plain = ("CLISC_TEST", "1");
     let Some(short) = on_a_terminal(&folder, "run a.cli --size 20x20", plain) else { return };
     assert!(short.starts_with("wrote a.png"), "{short}");
-    let long = on_a_terminal(&folder, "run a.cli --size 5000x5000 --samples 2 --threads 1", plain).unwrap();
+    let long = on_a_terminal(&folder, "run a.cli --size 5000x5000 --samples 6 --threads 1", plain).unwrap();
     assert_says(&long, "a.png [==");
     assert_says(&long, "left");
     let quiet = on_a_terminal(&folder, "run a.cli --size 5000x5000 --threads 1 --quiet", plain).unwrap();

@@ -43,6 +43,9 @@ const TILE_PIXELS: usize = TILE_WIDTH * TILE_HEIGHT;
 /// More objects are left to the slower way: the tables below grow with faces times lights.
 const MAX_OBJECTS: usize = 512;
 
+/// More samples along a side of a pixel are left to the slower way: a cancellation is seen between tiles.
+const MAX_SAMPLES: u32 = 16;
+
 /// What is prepared for one image.
 #[derive(Debug)]
 pub(super) struct Wide {
@@ -51,6 +54,8 @@ pub(super) struct Wide {
     /// Of the camera, rounded.
     step: f64,
     background: u32,
+    /// Along a side of a pixel.
+    samples: u32,
 }
 
 /// A rectangle of pixels inside of one tile of the plan.
@@ -65,6 +70,8 @@ pub(super) struct Rect {
 pub(super) struct Scratch {
     /// Red + 2⁸·green + 2¹⁶·blue, row by row.
     pixels: Vec<u32>,
+    /// For each pixel of several samples the sums of their channels and of the bounds on their errors.
+    sums: [Vec<f64>; 4],
     /// For each packet the lanes that are left to finer arithmetic.
     slow: Vec<u32>,
     /// t of the nearest hits.
@@ -90,12 +97,13 @@ impl Wide {
     pub fn new(plan: &Plan<'_>, step: Ball64, backend: Backend) -> Option<Self> {
         let n_objects = plan.scene.spheres.radius.len() + plan.scene.cylinders.radius.len();
         let settings = &plan.settings;
-        if n_objects > MAX_OBJECTS || settings.samples != 1 {
+        if n_objects > MAX_OBJECTS || settings.samples > MAX_SAMPLES {
             return None;
         }
         let dir_error = 1.01 * step.error() / step.value() + 2.0 * bounds::U;
-        let max_slope = 1.01 * step.value() * f64::from(settings.size.height() + 2);
-        let max_side = step.value() * f64::from(settings.size.width() + 2);
+        let samples = f64::from(settings.samples);
+        let max_slope = 1.01 * step.value() * samples * f64::from(settings.size.height() + 2);
+        let max_side = step.value() * samples * f64::from(settings.size.width() + 2);
         let is_moderate = step.value() > 1e-9 && max_slope < 1e6 && max_side < 1e6 && dir_error < 1e-12;
         let background = crate::trace::pixel::bytes_of(plan.scene.background)?;
         Some(Self {
@@ -103,6 +111,7 @@ impl Wide {
             bounds: is_moderate.then(|| Bounds::new(plan, dir_error, max_slope)).flatten()?,
             step: step.value(),
             background: u32::from_le_bytes([background[0], background[1], background[2], 0]),
+            samples: settings.samples,
         })
     }
 
@@ -110,6 +119,7 @@ impl Wide {
     pub fn scratch(&self) -> Scratch {
         Scratch {
             pixels: vec![0; TILE_PIXELS],
+            sums: std::array::from_fn(|_| vec![0.0; if self.samples > 1 { TILE_PIXELS } else { 0 }]),
             slow: vec![0; TILE_PIXELS / 8],
             t: vec![0.0; TILE_PIXELS],
             hits: Vec::new(),
@@ -144,7 +154,7 @@ impl Wide {
 
     /// Traces a tile into the scratch.
     pub fn trace(&self, plan: &Plan<'_>, sampling: &Sampling, rect: &Rect, scratch: &mut Scratch) {
-        self.backend.run(TileJob { wide: self, plan, sampling, rect, scratch });
+        self.backend.run(TileJob { wide: self, plan, sampling, rect, scratch, sample: [0; 2] });
     }
 }
 
@@ -184,6 +194,8 @@ struct TileJob<'a> {
     sampling: &'a Sampling,
     rect: &'a Rect,
     scratch: &'a mut Scratch,
+    /// Column and row, within its pixel, of the sample at hand.
+    sample: [u32; 2],
 }
 
 impl Job for TileJob<'_> {
@@ -194,13 +206,23 @@ impl Job for TileJob<'_> {
         self.scratch.slow.fill(0);
         self.scratch.pixels.fill(self.wide.background);
         let among = self.plan.tiles.candidates(self.rect.columns.start, self.rect.rows.start);
-        self.scratch.counts.eye_rays += (self.rect.columns.len() * self.rect.rows.len()) as u64;
+        let samples = self.wide.samples;
+        let n_pixels = self.rect.columns.len() * self.rect.rows.len();
+        self.scratch.counts.eye_rays += n_pixels as u64 * u64::from(samples * samples);
         if among.is_empty() {
             return;
         }
-        self.meet::<L>(among);
-        self.scratch.hits.sort_unstable_by_key(|hit| (hit.face, hit.packet));
-        self.shade::<L>();
+        self.scratch.sums.iter_mut().for_each(|sums| sums.fill(0.0));
+        // The lanes of a packet are the same sample of neighbouring pixels.
+        for sample in 0..samples * samples {
+            self.sample = [sample % samples, sample / samples];
+            self.meet::<L>(among);
+            self.scratch.hits.sort_unstable_by_key(|hit| (hit.face, hit.packet));
+            self.shade::<L>();
+        }
+        if samples > 1 {
+            self.average::<L>();
+        }
     }
 }
 
@@ -211,8 +233,8 @@ impl TileJob<'_> {
         let (column, row) = (packet * L::N % TILE_WIDTH, packet * L::N / TILE_WIDTH);
         let (left, top) =
             self.sampling.first_sample(self.rect.columns.start + column as u32, self.rect.rows.start + row as u32);
-        let steps =
-            L::load(&[0.0, 2.0, 4.0, 6.0, 8.0, 10.0, 12.0, 14.0, 16.0, 18.0, 20.0, 22.0, 24.0, 26.0, 28.0, 30.0]);
+        let (left, top) = (left + i64::from(2 * self.sample[0]), top - i64::from(2 * self.sample[1]));
+        let steps = numbers::<L>() * L::splat(f64::from(2 * self.wide.samples));
         ((L::splat(left as f64) + steps) * L::splat(self.wide.step), top as f64 * self.wide.step)
     }
 
@@ -246,6 +268,10 @@ impl TileJob<'_> {
                 self.mark_slow::<L>(packet, nearest.doubt);
                 if met.any() {
                     self.record(packet, &nearest, met.bits());
+                }
+                if self.wide.samples > 1 {
+                    let background = shade::splat_each(self.plan.scene.background.to_array());
+                    self.add_up(packet, background, L::splat(0.0), !nearest.met());
                 }
             }
         }
@@ -299,10 +325,47 @@ impl TileJob<'_> {
         let sure = lanes & !colors.doubt;
         if terms.reflectance > 0.0 {
             self.send_on(face, &at, &colors, &eye_rays(packet), sure);
+        } else if self.wide.samples > 1 {
+            self.add_up(packet, colors.color, colors.error, sure);
         } else {
-            let (bytes, proved) = shade::quantise(colors.color, colors.error);
-            bytes.store_whole(sure & proved, &mut self.scratch.pixels[packet * L::N..]);
-            self.mark_slow::<L>(packet, sure & !proved);
+            self.settle_packet(packet, colors.color, colors.error, sure);
+        }
+    }
+
+    /// Writes the pixels of a packet whose colours are found.
+    #[inline(always)]
+    fn settle_packet<L: Lanes>(&mut self, packet: usize, color: [L; 3], error: L, lanes: L::Mask) {
+        let (bytes, proved) = shade::quantise(color, error);
+        bytes.store_whole(lanes & proved, &mut self.scratch.pixels[packet * L::N..]);
+        self.mark_slow::<L>(packet, lanes & !proved);
+    }
+
+    /// Adds a packet of samples to their pixels.
+    #[inline(always)]
+    fn add_up<L: Lanes>(&mut self, packet: usize, color: [L; 3], error: L, lanes: L::Mask) {
+        let (zero, one) = (L::splat(0.0), L::splat(1.0));
+        let channels = [color[0].min(one).max(zero), color[1].min(one).max(zero), color[2].min(one).max(zero), error];
+        for k in 0..4 {
+            let sums = &mut self.scratch.sums[k][packet * L::N..];
+            (L::load(sums) + L::select(lanes, channels[k], zero)).store(sums);
+        }
+    }
+
+    /// Settles pixels by the sums of their samples.
+    #[inline(always)]
+    fn average<L: Lanes>(&mut self) {
+        let n_samples = f64::from(self.wide.samples * self.wide.samples);
+        // Each sum of n numbers up to 1 loses at most n roundings of n, and the division one more.
+        let rounding = L::splat(2.0 * (n_samples + 1.0) * bounds::U);
+        let n = L::splat(n_samples);
+        for packet in 0..TILE_PIXELS / L::N {
+            let mut sums = [n; 4];
+            for k in 0..4 {
+                sums[k] = L::load(&self.scratch.sums[k][packet * L::N..]);
+            }
+            let [red, green, blue, error] = sums;
+            let every = L::Mask::from_bits(u32::MAX);
+            self.settle_packet(packet, [red / n, green / n, blue / n], error / n + rounding, every);
         }
     }
 
@@ -435,6 +498,10 @@ impl TileJob<'_> {
             return;
         }
         let (color, error) = mirror::compose(rays, color, error);
+        if self.wide.samples > 1 {
+            self.add_up_each(rays.pixel, [color[0], color[1], color[2], error], lanes);
+            return;
+        }
         let (bytes, proved) = shade::quantise(color, error);
         self.mark_places(rays.pixel, lanes & !proved);
         let (mut places, mut found) = ([0.0; eye::MAX_LANES], [0; eye::MAX_LANES]);
@@ -446,6 +513,24 @@ impl TileJob<'_> {
             let lane = rest.trailing_zeros() as usize;
             rest &= rest - 1;
             self.scratch.pixels[places[lane] as usize] = found[lane];
+        }
+    }
+
+    /// Adds samples, within 0…1, and the bounds on their errors to their pixels, wherever they lie.
+    #[inline(always)]
+    fn add_up_each<L: Lanes>(&mut self, places: L, sample: [L; 4], lanes: L::Mask) {
+        let mut numbers = [[0.0; eye::MAX_LANES]; 5];
+        places.store(&mut numbers[4]);
+        for k in 0..4 {
+            sample[k].store(&mut numbers[k]);
+        }
+        let mut rest = lanes.bits();
+        while rest != 0 {
+            let lane = rest.trailing_zeros() as usize;
+            rest &= rest - 1;
+            for k in 0..4 {
+                self.scratch.sums[k][numbers[4][lane] as usize] += numbers[k][lane];
+            }
         }
     }
 
@@ -485,11 +570,17 @@ fn face_index(bounds: &Bounds, face: &Face) -> usize {
     }
 }
 
+/// Returns the number of each lane.
+#[inline(always)]
+fn numbers<L: Lanes>() -> L {
+    L::load(&[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.0, 12.0, 13.0, 14.0, 15.0])
+}
+
 /// Eye rays as they are before they meet anything: the pixel is the colour they find.
 #[inline(always)]
 fn eye_rays<L: Lanes>(packet: usize) -> Rays<L> {
     let (zero, one) = (L::splat(0.0), L::splat(1.0));
-    let lanes = L::load(&[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.0, 12.0, 13.0, 14.0, 15.0]);
+    let lanes = numbers::<L>();
     Rays {
         origin: [zero; 3],
         dir: [zero; 3],
