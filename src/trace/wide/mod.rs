@@ -11,6 +11,10 @@
 //! found, because no term of these mirrors is negative.
 //!
 //! Never here: ties, an epsilon.
+#![allow(
+    clippy::needless_range_loop,
+    reason = "what is not inlined, as many an iterator, misses the backend's instructions"
+)]
 
 mod bounds;
 mod eye;
