@@ -45,6 +45,16 @@ impl Compilation {
         self.n_errors > 0
     }
 
+    /// Adds what a later stage found.
+    pub fn add(&mut self, found: Vec<Diagnostic>) {
+        for diagnostic in found {
+            if count(&diagnostic, &mut self.n_errors, &mut self.n_warnings) {
+                self.diagnostics.push(diagnostic);
+            }
+        }
+        self.diagnostics.sort_by_key(|diagnostic| diagnostic.primary.span.start);
+    }
+
     /// Returns how many findings of a severity are not listed.
     #[must_use]
     pub fn n_unlisted(&self, severity: Severity) -> usize {
@@ -130,12 +140,7 @@ impl Found {
         let mut found: Vec<_> = parsed.chain(lowered.into_iter().map(of_stage(Stage::Lower))).collect();
         sort(&mut found);
         for (stage, diagnostic) in found {
-            let n = match diagnostic.severity() {
-                Severity::Error => &mut self.n_errors,
-                Severity::Warning => &mut self.n_warnings,
-            };
-            *n += 1;
-            if *n <= MAX_LISTED {
+            if count(&diagnostic, &mut self.n_errors, &mut self.n_warnings) {
                 self.listed.push((stage, diagnostic));
             }
         }
@@ -151,4 +156,14 @@ impl Found {
 /// Sorts by place, then by stage; a stage has its own order.
 fn sort(found: &mut [(Stage, Diagnostic)]) {
     found.sort_by_key(|(stage, diagnostic)| (diagnostic.primary.span.start, *stage));
+}
+
+/// Counts a finding and tells whether it is one of those that are listed.
+fn count(diagnostic: &Diagnostic, n_errors: &mut usize, n_warnings: &mut usize) -> bool {
+    let n = match diagnostic.severity() {
+        Severity::Error => n_errors,
+        Severity::Warning => n_warnings,
+    };
+    *n += 1;
+    *n <= MAX_LISTED
 }

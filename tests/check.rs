@@ -104,6 +104,32 @@ fn a_folder_without_scenes_is_a_slip() {
     assert!(call.stderr.contains("there is no .cli file below `empty`"), "{}", call.stderr);
 }
 
+/// What `run` would refuse on every system is wrong with the scene.
+#[test]
+fn a_name_that_leaves_the_output_folder_is_an_error() {
+    let folder = Folder::with_scene(&(scene("/tmp/a.png") + "write ../b.png\nwrite sub/c.png\n"));
+    let call = folder.clisc(&["check", "a.cli", "--format", "short"]);
+    assert_eq!(call.code, Some(1));
+    let codes: Vec<_> =
+        call.stdout.lines().filter_map(|line| line.get(6..).and_then(|line| line.split(']').next())).collect();
+    assert_eq!(codes, ["6:7: error[E0501", "7:7: error[E0502"], "{}", call.stdout);
+    assert_eq!(call.stderr, "1 scene checked: 2 errors, no warning\n");
+}
+
+#[test]
+#[cfg(unix)]
+fn the_name_of_a_scene_commands_no_terminal() {
+    let folder = Folder::new();
+    let name = "a\u{1B}]0;x\u{7}.cli";
+    folder.put(name, BAD);
+    for args in [&["check", name][..], &["check", name, "--format", "short"], &["run", name], &["run", "b\u{1B}.cli"]] {
+        let call = folder.clisc(args);
+        let told = call.stdout + &call.stderr;
+        assert!(!told.contains(['\u{1B}', '\u{7}']), "{told:?}");
+        assert!(told.contains("a?]0;x?.cli") || told.contains("b?.cli"), "{told:?}");
+    }
+}
+
 #[test]
 fn standard_input_is_a_scene() {
     let folder = Folder::new();

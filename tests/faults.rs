@@ -116,6 +116,20 @@ fn a_read_only_folder_is_named_and_keeps_its_image() {
     assert_eq!(folder.image("out/a.png").width(), 4);
 }
 
+#[test]
+fn a_folder_that_cannot_be_read_leaves_the_other_scenes() {
+    let folder = Folder::new();
+    folder.put("scenes/a.cli", scene("a.png"));
+    folder.put("scenes/closed/b.cli", scene("b.png"));
+    folder.put("scenes/open/c.cli", scene("c.png"));
+    open_to_all(&folder);
+    fs::set_permissions(folder.at("scenes/closed"), fs::Permissions::from_mode(0o000)).unwrap();
+    let call = clisc_without_privileges(&folder, &["check", "scenes"]);
+    fs::set_permissions(folder.at("scenes/closed"), fs::Permissions::from_mode(0o777)).unwrap();
+    assert_fails(&call, &["cannot read the folder `scenes/closed`: Permission denied"]);
+    assert!(call.stderr.ends_with("2 scenes checked: no error, no warning\n"), "{}", call.stderr);
+}
+
 /// Runs a shell script in the folder, `$CLISC` being the command.
 fn shell(folder: &Folder, mut command: Command, script: &str) -> Call {
     command.args(["-c", script]).current_dir(folder.at(".")).env("CLISC", env!("CARGO_BIN_EXE_clisc"));

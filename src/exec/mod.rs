@@ -17,7 +17,7 @@ mod stream;
 mod write;
 
 pub use cancel::CancellationToken;
-pub use name::{Refusal, refuse_name};
+pub use name::{Refusal, refuse_name, refused_names};
 pub use observe::{Event, Observer, WriteReport};
 pub use sink::{ImageRequest, MemoryFile, MemorySink, Sink, SinkError, Step};
 

@@ -67,6 +67,16 @@ impl Refusal {
     }
 }
 
+/// Finds the names that a program may not write to, as far as their text tells: one diagnostic for each, in order.
+#[must_use]
+pub fn refused_names(program: &Program) -> Vec<Diagnostic> {
+    let refused = |(idx, command): (usize, &Command)| match command {
+        Command::Write(name) => refuse_name(name).map(|refusal| refusal.diagnostic(program, idx)),
+        _ => None,
+    };
+    program.commands.iter().enumerate().filter_map(refused).collect()
+}
+
 /// Tells why a scene may not write to `name`, as far as its text tells.
 #[must_use]
 pub fn refuse_name(name: &str) -> Option<Refusal> {

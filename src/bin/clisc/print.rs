@@ -7,6 +7,7 @@ use std::io::{self, BufWriter, ErrorKind, IsTerminal, Write};
 use anyhow::Context;
 use clisc::Compilation;
 use clisc::diag::Severity;
+use clisc::diag::render::harmless;
 use clisc::diag::words::counted;
 use clisc::source::Source;
 
@@ -26,13 +27,13 @@ pub fn stderr() -> impl Write {
 /// When they cannot be written, except that nobody reads them any more.
 pub fn to_stdout(text: &str) -> anyhow::Result<()> {
     let mut stdout = Patient(io::stdout().lock());
-    stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()).context("cannot write to standard output")
+    stdout.write_all(harmless(text).as_bytes()).and_then(|()| stdout.flush()).context("cannot write to standard output")
 }
 
 /// Prints messages to standard error. There is no place left to say that this failed.
 pub fn to_stderr(text: &str) {
     let mut stderr = io::stderr().lock();
-    let _ = stderr.write_all(text.as_bytes()).and_then(|()| stderr.flush());
+    let _ = stderr.write_all(harmless(text).as_bytes()).and_then(|()| stderr.flush());
 }
 
 /// Says of a scene how much was found in it that is not listed, if there is any.

@@ -4,12 +4,13 @@
 //! belongs to the diagnostic; lines too long for a screen, of which a piece is shown; and the text itself, in which
 //! nothing that a terminal would obey is left.
 
+use std::borrow::Cow;
 use std::io::{self, Write};
 use std::ops::Range;
 
 use ariadne::{Config, IndexType, Label, Report, ReportKind};
 
-use crate::diag::render::short;
+use crate::diag::render::{self, short};
 use crate::diag::{Diagnostic, Severity};
 use crate::source::{Source, Span};
 
@@ -59,6 +60,8 @@ pub fn render_human(source: &Source, diagnostics: &[Diagnostic], color: Color, o
 /// A source made ready for drawing.
 struct Canvas<'s> {
     source: &'s Source,
+    /// The name of the source.
+    name: Cow<'s, str>,
     color: Color,
     /// How much shorter the drawn text is than the source: the length of a byte-order mark.
     n_cut: u32,
@@ -70,7 +73,8 @@ impl<'s> Canvas<'s> {
         let text = source.text();
         let visible = text.strip_prefix(BOM).unwrap_or(text);
         let n_cut = (text.len() - visible.len()) as u32;
-        Self { source, color, n_cut, drawn: ariadne::Source::from(harmless(visible)) }
+        let name = render::harmless(source.name());
+        Self { source, name, color, n_cut, drawn: ariadne::Source::from(harmless(visible)) }
     }
 
     /// Tells whether all lines that the diagnostic speaks of can be shown.
@@ -97,7 +101,7 @@ impl<'s> Canvas<'s> {
     /// Draws with ariadne, whose own header and trailing blanks are left out.
     fn draw(&self, diagnostic: &Diagnostic, out: &mut dyn Write) -> io::Result<()> {
         let mut drawing = Vec::new();
-        self.report(diagnostic).write((self.source.name(), &self.drawn), &mut drawing)?;
+        self.report(diagnostic).write((&*self.name, &self.drawn), &mut drawing)?;
         let drawing = String::from_utf8_lossy(&drawing);
         drawing.lines().skip(1).try_for_each(|line| writeln!(out, "{}", line.trim_end()))
     }
@@ -128,7 +132,7 @@ impl<'s> Canvas<'s> {
 
     fn place(&self, span: Span) -> Place<'_> {
         let shifted = |offset: u32| offset.saturating_sub(self.n_cut) as usize;
-        (self.source.name(), shifted(span.start)..shifted(span.end))
+        (&*self.name, shifted(span.start)..shifted(span.end))
     }
 
     /// Draws the primary place alone, with a piece of its line.
@@ -138,7 +142,7 @@ impl<'s> Canvas<'s> {
         let piece = Piece::new(text, self.line_at(diagnostic.primary.span.start), diagnostic.primary.span);
         let number = place.line.to_string();
         let margin = " ".repeat(number.len());
-        writeln!(out, " {margin} ╭─[ {}:{}:{} ]", self.source.name(), place.line, place.column)?;
+        writeln!(out, " {margin} ╭─[ {}:{}:{} ]", self.name, place.line, place.column)?;
         writeln!(out, " {margin} │")?;
         writeln!(out, " {number} │ {}", piece.text)?;
         writeln!(out, " {margin} │ {}{}", " ".repeat(piece.n_before), "─".repeat(piece.n_marked))?;

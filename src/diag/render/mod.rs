@@ -10,3 +10,12 @@ mod short;
 pub use human::{Color, render_human};
 pub use json::{JsonReport, render_json};
 pub use short::render_short;
+
+use std::borrow::Cow;
+
+/// Replaces what a terminal would obey, as the name of a file may hold it, by question marks.
+#[must_use]
+pub fn harmless(text: &str) -> Cow<'_, str> {
+    let is_obeyed = |character: char| character.is_control() && !matches!(character, '\n' | '\t');
+    if text.contains(is_obeyed) { text.replace(is_obeyed, "?").into() } else { text.into() }
+}

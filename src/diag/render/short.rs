@@ -3,6 +3,7 @@
 use std::io::{self, Write};
 
 use crate::diag::Diagnostic;
+use crate::diag::render::harmless;
 use crate::source::Source;
 
 /// Writes `path:line:col: error[E0203]: message` for each diagnostic.
@@ -17,5 +18,6 @@ pub fn render_short(source: &Source, diagnostics: &[Diagnostic], out: &mut dyn W
 pub(super) fn write_line(source: &Source, diagnostic: &Diagnostic, out: &mut dyn Write) -> io::Result<()> {
     let place = source.lines().position(source.text(), diagnostic.primary.span.start);
     let (word, id) = (diagnostic.severity().word(), diagnostic.code.id);
-    writeln!(out, "{}:{}:{}: {word}[{id}]: {}", source.name(), place.line, place.column, diagnostic.message)
+    let name = harmless(source.name());
+    writeln!(out, "{name}:{}:{}: {word}[{id}]: {}", place.line, place.column, diagnostic.message)
 }

@@ -1,7 +1,8 @@
 //! `clisc check`.
 
 use std::ffi::OsStr;
-use std::io::Write;
+use std::fs;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -10,6 +11,7 @@ use clisc::Compilation;
 use clisc::diag::Severity;
 use clisc::diag::render::{Color, JsonReport, render_human, render_short};
 use clisc::diag::words::counted;
+use clisc::exec::refused_names;
 use clisc::source::Source;
 
 use crate::args::{CheckArgs, CheckFormat};
@@ -22,10 +24,9 @@ pub fn run(args: &CheckArgs) -> anyhow::Result<ExitCode> {
     let mut printer = Printer::new(args.format)?;
     let mut tally = Tally::default();
     for path in &args.paths {
-        match find_scenes(path) {
-            Ok(scenes) => scenes.iter().try_for_each(|scene| check(scene, &mut printer, &mut tally))?,
-            Err(error) => tally.miss(&error),
-        }
+        let (scenes, missed) = find_scenes(path);
+        missed.iter().for_each(|error| tally.miss(error));
+        scenes.iter().try_for_each(|scene| check(scene, &mut printer, &mut tally))?;
     }
     printer.finish()?;
     print::to_stderr(&tally.summary());
@@ -36,7 +37,8 @@ pub fn run(args: &CheckArgs) -> anyhow::Result<ExitCode> {
 fn check(path: &Path, printer: &mut Printer, tally: &mut Tally) -> anyhow::Result<()> {
     match input::read(path) {
         Ok(source) => {
-            let compilation = clisc::compile(&source);
+            let mut compilation = clisc::compile(&source);
+            compilation.add(refused_names(&compilation.program));
             tally.add(&compilation);
             printer.print(&source, &compilation)?;
             print::unlisted_to_stderr(&source, &compilation);
@@ -46,32 +48,45 @@ fn check(path: &Path, printer: &mut Printer, tally: &mut Tally) -> anyhow::Resul
     Ok(())
 }
 
-/// Returns the scenes that an argument means: itself, or every `.cli` file below the folder it names.
-fn find_scenes(path: &Path) -> anyhow::Result<Vec<PathBuf>> {
+/// Returns the scenes that an argument means: itself, or every `.cli` file below the folder it names, as far as that can
+/// be read. Says what could not be.
+fn find_scenes(path: &Path) -> (Vec<PathBuf>, Vec<anyhow::Error>) {
     if !path.is_dir() {
-        return Ok(vec![path.to_owned()]);
+        return (vec![path.to_owned()], Vec::new());
     }
-    let mut scenes = Vec::new();
-    walk(path, &mut scenes)?;
-    anyhow::ensure!(!scenes.is_empty(), "there is no .cli file below `{}`", path.display());
-    Ok(scenes)
+    let (mut scenes, mut missed) = (Vec::new(), Vec::new());
+    walk(path, &mut scenes, &mut missed);
+    if scenes.is_empty() && missed.is_empty() {
+        missed.push(anyhow::anyhow!("there is no .cli file below `{}`", path.display()));
+    }
+    (scenes, missed)
 }
 
-/// Appends the scenes below a folder, sorted by name; links to folders are not followed.
-fn walk(folder: &Path, scenes: &mut Vec<PathBuf>) -> anyhow::Result<()> {
-    let context = || format!("cannot read the folder `{}`", folder.display());
-    let entries = std::fs::read_dir(folder).with_context(context)?;
-    let mut entries = entries.collect::<Result<Vec<_>, _>>().with_context(context)?;
-    entries.sort_by_key(std::fs::DirEntry::file_name);
-    for entry in entries {
-        let path = entry.path();
-        if entry.file_type().with_context(context)?.is_dir() {
-            walk(&path, scenes)?;
-        } else if path.extension() == Some(OsStr::new("cli")) {
-            scenes.push(path);
+/// Appends the scenes below a folder, sorted by name, and the folders that cannot be read; links to folders are not
+/// followed.
+fn walk(folder: &Path, scenes: &mut Vec<PathBuf>, missed: &mut Vec<anyhow::Error>) {
+    match list(folder) {
+        Ok(entries) => entries.into_iter().for_each(|(path, is_folder)| {
+            if is_folder {
+                walk(&path, scenes, missed);
+            } else if path.extension() == Some(OsStr::new("cli")) {
+                scenes.push(path);
+            }
+        }),
+        Err(error) => {
+            let message = format!("cannot read the folder `{}`", folder.display());
+            missed.push(anyhow::Error::from(error).context(message));
         }
     }
-    Ok(())
+}
+
+/// Returns what is in a folder, sorted by name, and whether it is a folder itself.
+fn list(folder: &Path) -> io::Result<Vec<(PathBuf, bool)>> {
+    let entries =
+        fs::read_dir(folder)?.map(|entry| entry.and_then(|entry| Ok((entry.path(), entry.file_type()?.is_dir()))));
+    let mut entries = entries.collect::<Result<Vec<_>, _>>()?;
+    entries.sort();
+    Ok(entries)
 }
 
 /// What has been found so far.
