@@ -336,6 +336,21 @@ fn drawings_keep_their_shape() {
 }
 
 #[test]
+fn a_help_does_not_lead_to_the_next_mistake() {
+    for (line, help) in [
+        ("fov inf", "write a usual number, as in `fov 60`"),
+        ("fov 1e999", "write a usual number, as in `fov 60`"),
+        ("write(b.png)", "write `write b.png`"),
+        ("write=\"b.png\"", "write `write b.png`"),
+        ("sphere 0 0 0 1; sphere 1 1 1 1", "write `sphere 0 0 0 1`, and begin a new line before `sphere`"),
+    ] {
+        let found = compile(&Source::new("test.cli", around(line))).diagnostics;
+        let helps: Vec<_> = found.iter().filter_map(|diagnostic| diagnostic.help.as_deref()).collect();
+        assert_eq!(helps, [help], "{line}: {found:#?}");
+    }
+}
+
+#[test]
 fn many_diagnostics_are_told_and_all_are_counted() {
     for n in [MAX_LISTED, MAX_LISTED + 5000] {
         let source = Source::new("scene.cli", "sphere 1\n".repeat(n));

@@ -85,6 +85,11 @@ fn glued(lower: &str, text: &str, source: &Source, args: &[Token]) -> Option<Gue
     if rest.starts_with(char::is_alphabetic) {
         return None;
     }
+    let bare_name = rest.trim_matches(|c| SEPARATORS.contains(&c) || matches!(c, '=' | ':' | '"' | '\''));
+    if matches!(spec.arguments, Arguments::FileName(_)) && args.is_empty() && bare_name.ends_with(".png") {
+        let help = proposed(&format!("{} {bare_name}", spec.name));
+        return Some(Guess { spec, label: "a command and its argument in one word".to_owned(), help });
+    }
     let texts =
         std::iter::once(rest.trim_start_matches(['=', ':'])).chain(args.iter().map(|arg| source.slice(arg.span)));
     let help = match numbers_between(texts, &SEPARATORS) {

@@ -5,7 +5,7 @@ use crate::diag::{Code, Diagnostic, codes};
 use crate::source::{Source, Span};
 use crate::syntax::lexer::lex_line;
 use crate::syntax::parser::errors::BadCommand;
-use crate::syntax::spec::{ArgSpec, Arguments, CommandSpec};
+use crate::syntax::spec::{ArgSpec, Arguments, CommandSpec, Range};
 use crate::syntax::token::{Token, TokenKind};
 
 /// Characters that people put between or around numbers.
@@ -60,7 +60,12 @@ pub(super) fn diagnose(source: &Source, span: Span, spec: &CommandSpec, arg: &Ar
         Some(Finding { code, why, help }) if code == &codes::MALFORMED_NUMBER => {
             (code, format!("{} is not a number: {why}", quoted(text)), help)
         }
-        Some(Finding { code, why, help }) => (code, format!("{} {why}", quoted(text)), help),
+        Some(Finding { code, why, help }) => {
+            // What is proposed for any number would be the next mistake where the range is narrow.
+            let is_narrow = matches!(arg.range, Range::PositiveBelow(_));
+            let help = if is_narrow { format!("write a usual number, as in `{}`", spec.example) } else { help };
+            (code, format!("{} {why}", quoted(text)), help)
+        }
         None => (
             &codes::MALFORMED_NUMBER,
             format!("{} is not a number", quoted(text)),
@@ -87,11 +92,15 @@ pub(super) fn find_commas(command: &BadCommand<'_>) -> Option<Diagnostic> {
         _ if n_commas == n_found => "commas",
         _ => "punctuation",
     };
-    let repair = format!("{} {}", command.spec.name, pieces.join(" "));
+    let repair = proposed(&format!("{} {}", command.spec.name, pieces.join(" ")));
+    let help = match command.next_name {
+        Some(next) => format!("{repair}, and begin a new line before {}", quoted(command.source.slice(next))),
+        None => repair,
+    };
     let message = format!("{what} among the numbers of `{}`", command.spec.name);
     let diagnostic = Diagnostic::new(&codes::MALFORMED_NUMBER, first.span, message)
         .label("blanks alone separate numbers")
-        .help(proposed(&repair));
+        .help(help);
     Some(with_separator.fold(diagnostic, |diagnostic, arg| diagnostic.secondary(arg.span, "here too")))
 }
 
