@@ -41,7 +41,7 @@ fn sketch(crowd: &Crowd, stream: &mut Stream) -> Sketch {
         let (x, y, z) = (blend(0, x), blend(1, y), blend(2, z));
         let exponents = crowd.sizes.map(f64::log2);
         let size = libm::exp2(stream.between(exponents[0], exponents[1]));
-        if i % crowd.cylinders == 0 {
+        if (i + 1) % crowd.cylinders == 0 {
             sketch.cylinder(size, [x, z], [y, y + 2.0 * size]);
         } else {
             sketch.sphere([x, y, z], size);
@@ -85,6 +85,8 @@ fn searching_changes_no_pixel() {
         Crowd { n_objects: 3000, sizes: [0.005, 0.05], cylinders: 7, ..usual },
         Crowd { n_objects: 1000, sizes: [1e-4, 0.1], cluster: 0.05, ..usual },
         Crowd { n_objects: 1000, sizes: [1e-6, 0.01], cluster: 0.001, cylinders: 5000, ..usual },
+        Crowd { n_objects: 3000, sizes: [0.01, 0.2], cylinders: 5000, ..usual },
+        Crowd { n_objects: 700, sizes: [0.1, 0.4], cylinders: 5000, depths: [-9.0, -1.0], ..usual },
         Crowd { n_objects: 200, sizes: [0.01, 20.0], ..usual },
         Crowd { n_objects: 400, sizes: [0.01, 0.5], depths: [-3.0, 3.0], ..usual },
         Crowd { n_objects: 100, sizes: [2.0, 30.0], depths: [-3.0, 3.0], cylinders: 2, ..usual },

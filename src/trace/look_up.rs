@@ -66,7 +66,7 @@ pub fn before_light<'a, R: Real>(
 /// With m, b, a as in `intersect`, the line meets the sphere when |m × d|² < a·r², and no meeting is behind
 /// (b + r·√a)/a. When b > 0 the last one is ahead. Each component of m × d is off by at most twice the slack δ of
 /// `reject`, b by three times.
-fn met_before(ray: &PlainRay, scene: &Scene<'_>, i: usize) -> f64 {
+pub fn met_before(ray: &PlainRay, scene: &Scene<'_>, i: usize) -> f64 {
     let (spheres, d) = (&scene.spheres, ray.dir);
     let m = [spheres.x[i] - ray.origin[0], spheres.y[i] - ray.origin[1], spheres.z[i] - ray.origin[2]];
     let sum = |v: [f64; 3]| v[0].abs() + v[1].abs() + v[2].abs();

@@ -230,6 +230,7 @@ pub(super) struct LightTerms {
 /// The constants of one image.
 #[derive(Clone, Debug)]
 pub(super) struct Bounds {
+    eye: Eye,
     /// κ.
     pub eye_roundoff: f64,
     /// All faces: those of spheres, then three for each cylinder, the wall, the lower and the upper cap.
@@ -266,6 +267,7 @@ impl Bounds {
         let groups = group_spheres(scene, &mut faces);
         Some(Self {
             groups,
+            eye,
             eye_roundoff: eye.roundoff,
             faces,
             spheres,
@@ -294,6 +296,59 @@ fn group_spheres(scene: &Scene<'_>, faces: &mut [Face]) -> Vec<Vec<u32>> {
     groups.into_iter().map(|(_, members)| members).collect()
 }
 
+impl Bounds {
+    /// Works out the constants of a scene of many spheres, without those of any object.
+    ///
+    /// Returns `None` when there are cylinders, when the eye is not surely outside of every sphere, and for scenes that are
+    /// left to finer arithmetic altogether.
+    pub fn of_crowd(plan: &Plan<'_>, dir_error: f64, max_slope: f64) -> Option<Self> {
+        let (scene, s) = (&plan.scene, &plan.scene.spheres);
+        let is_outside = |i: usize| {
+            let (squared, radius_squared) =
+                (s.x[i] * s.x[i] + s.y[i] * s.y[i] + s.z[i] * s.z[i], s.radius[i] * s.radius[i]);
+            squared - radius_squared > MIN_POWER * (squared + radius_squared)
+        };
+        if !scene.cylinders.radius.is_empty() || !is_moderate(scene) || !(0..s.radius.len()).all(is_outside) {
+            return None;
+        }
+        let light = |light: &Light| WideLight {
+            position: light.position.to_array(),
+            spheres: Vec::new(),
+            cylinders: Vec::new(),
+        };
+        Some(Self {
+            eye: Eye { roundoff: dir_error + 8.0 * U, stretch: (1.0 + max_slope * max_slope).sqrt() },
+            lights: scene.lights.iter().map(light).collect(),
+            terms: scene.surfaces.iter().map(|s| terms_of(s, &scene.lights, plan.settings.part)).collect(),
+            ..Self::of_nothing(dir_error + 8.0 * U, usual_radius(scene))
+        })
+    }
+
+    /// Works out the constants of some spheres of a crowd, without lights and surfaces.
+    pub fn of_spheres(&self, plan: &Plan<'_>, spheres: &[u32]) -> Option<Self> {
+        let mut faces = Vec::with_capacity(spheres.len());
+        let seen = spheres.iter().map(|&i| eye_sphere(&plan.scene, self.eye, i as usize, &mut faces));
+        let spheres = seen.collect::<Option<Vec<_>>>()?;
+        Some(Self { eye: self.eye, faces, spheres, ..Self::of_nothing(self.eye_roundoff, self.size) })
+    }
+
+    fn of_nothing(eye_roundoff: f64, size: f64) -> Self {
+        Self {
+            eye: Eye { roundoff: eye_roundoff, stretch: 1.0 },
+            eye_roundoff,
+            groups: Vec::new(),
+            faces: Vec::new(),
+            spheres: Vec::new(),
+            cylinders: Vec::new(),
+            lights: Vec::new(),
+            terms: Vec::new(),
+            size,
+            wall_equations: Vec::new(),
+            sphere_equations: Vec::new(),
+        }
+    }
+}
+
 /// Tells whether all numbers of a scene lie where the bounds hold.
 fn is_moderate(scene: &Scene<'_>) -> bool {
     let (s, c) = (&scene.spheres, &scene.cylinders);
@@ -309,7 +364,9 @@ fn is_moderate(scene: &Scene<'_>) -> bool {
 
 /// Returns the median radius, or 1 when there is none.
 fn usual_radius(scene: &Scene<'_>) -> f64 {
-    let mut radii: Vec<_> = scene.spheres.radius.iter().chain(&scene.cylinders.radius).copied().collect();
+    let n_objects = scene.spheres.radius.len() + scene.cylinders.radius.len();
+    let radii = scene.spheres.radius.iter().chain(&scene.cylinders.radius).copied();
+    let mut radii: Vec<_> = radii.step_by(n_objects / 1024 + 1).collect();
     radii.sort_unstable_by(f64::total_cmp);
     radii.get(radii.len() / 2).copied().unwrap_or(1.0)
 }
@@ -322,7 +379,7 @@ fn power<const N: usize>(m: [DoubleDouble; N], radius: f64) -> (f64, f64) {
 }
 
 /// What bounds of eye rays depend on.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct Eye {
     /// κ.
     roundoff: f64,
@@ -492,22 +549,6 @@ fn seen_from(scene: &Scene<'_>, light: &Light) -> WideLight {
     let (s, c) = (&scene.spheres, &scene.cylinders);
     let position = light.position.to_array();
     let [x, y, z] = position;
-    let sphere = |i: usize| {
-        let m = [DoubleDouble::sum(s.x[i], -x), DoubleDouble::sum(s.y[i], -y), DoubleDouble::sum(s.z[i], -z)];
-        let (power, squares) = power(m, s.radius[i]);
-        let is_shell = s.x[i] * s.x[i] + s.y[i] * s.y[i] + s.z[i] * s.z[i] < s.radius[i] * s.radius[i];
-        let side = match (power > MIN_POWER * squares, power < -MIN_POWER * squares, is_shell) {
-            (true, _, false) => Side::Outside,
-            (true, _, true) => Side::Closed,
-            (_, true, false) => Side::Within,
-            (_, true, true) => Side::Open,
-            (false, false, _) => Side::Unknown,
-        };
-        Occluder {
-            equation: f64::from(scene.sphere_equations[i].number()),
-            ..occluder(m, power, s.radius[i], [0.0; 2], side)
-        }
-    };
     let cylinder = |i: usize| {
         let m = [DoubleDouble::sum(c.x[i], -x), DoubleDouble::ZERO, DoubleDouble::sum(c.z[i], -z)];
         let (power, squares) = power(m, c.radius[i]);
@@ -521,8 +562,27 @@ fn seen_from(scene: &Scene<'_>, light: &Light) -> WideLight {
     };
     WideLight {
         position,
-        spheres: (0..s.radius.len()).map(sphere).collect(),
+        spheres: (0..s.radius.len()).map(|i| sphere_from(scene, position, i)).collect(),
         cylinders: (0..c.radius.len()).map(cylinder).collect(),
+    }
+}
+
+/// Works out what a sphere is to a light.
+pub(super) fn sphere_from(scene: &Scene<'_>, [x, y, z]: [f64; 3], i: usize) -> Occluder {
+    let s = &scene.spheres;
+    let m = [DoubleDouble::sum(s.x[i], -x), DoubleDouble::sum(s.y[i], -y), DoubleDouble::sum(s.z[i], -z)];
+    let (power, squares) = power(m, s.radius[i]);
+    let is_shell = s.x[i] * s.x[i] + s.y[i] * s.y[i] + s.z[i] * s.z[i] < s.radius[i] * s.radius[i];
+    let side = match (power > MIN_POWER * squares, power < -MIN_POWER * squares, is_shell) {
+        (true, _, false) => Side::Outside,
+        (true, _, true) => Side::Closed,
+        (_, true, false) => Side::Within,
+        (_, true, true) => Side::Open,
+        (false, false, _) => Side::Unknown,
+    };
+    Occluder {
+        equation: f64::from(scene.sphere_equations[i].number()),
+        ..occluder(m, power, s.radius[i], [0.0; 2], side)
     }
 }
 

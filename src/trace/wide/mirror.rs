@@ -16,7 +16,6 @@
 //! *The reflected direction* d − 2(n·d)n depends on d as an isometry does; a normal that is off by η across itself turns
 //! it by 2η, and one that is not of unit length by ζ stretches it by 4ζ.
 
-use crate::plan::Object;
 use crate::trace::kernels::{Lanes, Mask};
 use crate::trace::wide::bounds::{Bounds, Face, FaceKind, MIN_CAP_COSINE, MIN_COSINE, Terms, U};
 use crate::trace::wide::eye::{MAX_LANES, Nearest};
@@ -207,7 +206,7 @@ pub(super) fn nearest_hit<L: Lanes>(
     let reach = Reach::new(bounds, rays);
     let mut nearest = Nearest::nothing();
     for &i in spheres {
-        meet_sphere(&mut nearest, bounds, &bounds.faces[i as usize], rays, &reach, active);
+        meet_sphere(&mut nearest, bounds, i, rays, &reach, active);
     }
     for &i in cylinders {
         let first = bounds.spheres.len() + 3 * i as usize;
@@ -220,11 +219,12 @@ pub(super) fn nearest_hit<L: Lanes>(
 fn meet_sphere<L: Lanes>(
     nearest: &mut Nearest<L>,
     bounds: &Bounds,
-    face: &Face,
+    face_idx: u32,
     rays: &Rays<L>,
     reach: &Reach<L>,
     active: L::Mask,
 ) {
+    let face = &bounds.faces[face_idx as usize];
     let m: [L; 3] = [
         L::splat(face.center[0]) - rays.origin[0],
         L::splat(face.center[1]) - rays.origin[1],
@@ -247,7 +247,7 @@ fn meet_sphere<L: Lanes>(
         nearest.doubt = nearest.doubt | (active & !hit);
         let root = discriminant.sqrt();
         let margin = off + slack / root;
-        nearest.consider(bounds, hit, b + root, margin + margin, sphere_face(face));
+        nearest.consider(bounds, hit, b + root, margin + margin, face_idx);
         return;
     }
     let line_meets = active & is_other & discriminant.ge(-slack);
@@ -265,14 +265,7 @@ fn meet_sphere<L: Lanes>(
         let root = discriminant.sqrt();
         // A root is off by at most the error of its square, divided by it.
         let margin = off + slack / root;
-        nearest.consider(bounds, hit, b - root, margin + margin, sphere_face(face));
-    }
-}
-
-/// The faces of spheres come first, in order.
-fn sphere_face(face: &Face) -> u32 {
-    match face.object {
-        Object::Sphere(i) | Object::Cylinder(i) => i,
+        nearest.consider(bounds, hit, b - root, margin + margin, face_idx);
     }
 }
 

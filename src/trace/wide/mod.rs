@@ -17,6 +17,7 @@
 )]
 
 mod bounds;
+mod crowd;
 mod eye;
 mod mirror;
 mod shade;
@@ -31,6 +32,7 @@ use crate::trace::kernels::{Backend, Job, Lanes, Mask};
 use crate::trace::pixel::Sampling;
 
 use self::bounds::{Bounds, Face, FaceKind};
+use self::crowd::{Around, Few};
 use self::eye::{EyeRays, Nearest, RowSphere};
 use self::mirror::{Met, Rays, Waiting};
 use self::shade::{Colors, Points};
@@ -44,7 +46,7 @@ const TILE_HEIGHT: usize = 16;
 
 const TILE_PIXELS: usize = TILE_WIDTH * TILE_HEIGHT;
 
-/// More objects are left to the slower way: the tables below grow with faces times lights.
+/// With more objects tables of all of them, which grow with faces times lights, would cost more than they save.
 const MAX_OBJECTS: usize = 512;
 
 /// More samples along a side of a pixel are left to the slower way: a cancellation is seen between tiles.
@@ -55,6 +57,8 @@ const MAX_SAMPLES: u32 = 16;
 pub(super) struct Wide {
     backend: Backend,
     bounds: Bounds,
+    /// Whether there are so many objects that their constants are worked out when they are needed.
+    is_crowd: bool,
     /// Of the camera, rounded.
     step: f64,
     background: u32,
@@ -85,6 +89,9 @@ pub(super) struct Scratch {
     /// For each face, and then for each group, what can hide the lights from it, once it is met.
     occluders: Vec<Option<LightOccluders>>,
     waiting: Waiting,
+    /// What is looked up in a crowd: for a packet of hits, and for one of reflected rays.
+    around: Around,
+    found: Vec<u32>,
     pub counts: Counts,
 }
 
@@ -101,9 +108,10 @@ impl Wide {
     pub fn new(plan: &Plan<'_>, step: Ball64, backend: Backend) -> Option<Self> {
         let n_objects = plan.scene.spheres.radius.len() + plan.scene.cylinders.radius.len();
         let settings = &plan.settings;
-        if n_objects > MAX_OBJECTS || settings.samples > MAX_SAMPLES {
+        if settings.samples > MAX_SAMPLES {
             return None;
         }
+        let is_crowd = n_objects > MAX_OBJECTS;
         let dir_error = 1.01 * step.error() / step.value() + 2.0 * bounds::U;
         let samples = f64::from(settings.samples);
         let max_slope = 1.01 * step.value() * samples * f64::from(settings.size.height() + 2);
@@ -112,7 +120,12 @@ impl Wide {
         let background = crate::trace::pixel::bytes_of(plan.scene.background)?;
         Some(Self {
             backend,
-            bounds: is_moderate.then(|| Bounds::new(plan, dir_error, max_slope)).flatten()?,
+            bounds: match (is_moderate, is_crowd) {
+                (false, _) => return None,
+                (true, false) => Bounds::new(plan, dir_error, max_slope)?,
+                (true, true) => Bounds::of_crowd(plan, dir_error, max_slope)?,
+            },
+            is_crowd,
             step: step.value(),
             background: u32::from_le_bytes([background[0], background[1], background[2], 0]),
             samples: settings.samples,
@@ -130,6 +143,8 @@ impl Wide {
             rows: Vec::new(),
             occluders: vec![None; self.bounds.faces.len() + self.bounds.groups.len()],
             waiting: Waiting::new(),
+            around: Around::default(),
+            found: Vec::new(),
             counts: Counts::default(),
         }
     }
@@ -158,7 +173,26 @@ impl Wide {
 
     /// Traces a tile into the scratch.
     pub fn trace(&self, plan: &Plan<'_>, sampling: &Sampling, rect: &Rect, scratch: &mut Scratch) {
-        self.backend.run(TileJob { wide: self, plan, sampling, rect, scratch, sample: [0; 2] });
+        let among = plan.tiles.candidates(rect.columns.start, rect.rows.start);
+        if !self.is_crowd {
+            self.backend.run(TileJob {
+                wide: self,
+                bounds: &self.bounds,
+                among,
+                plan,
+                sampling,
+                rect,
+                scratch,
+                sample: [0; 2],
+            });
+            return;
+        }
+        let Some(few) = Few::new(&self.bounds, plan, among.spheres) else {
+            scratch.slow.fill(u32::MAX);
+            return;
+        };
+        let (bounds, among) = (&few.bounds, few.candidates());
+        self.backend.run(TileJob { wide: self, bounds, among, plan, sampling, rect, scratch, sample: [0; 2] });
     }
 }
 
@@ -194,6 +228,10 @@ impl Scratch {
 /// One tile.
 struct TileJob<'a> {
     wide: &'a Wide,
+    /// The constants of what its rays can meet, of all objects or of its own.
+    bounds: &'a Bounds,
+    /// What its eye rays can meet, by number in the constants.
+    among: Candidates<'a>,
     plan: &'a Plan<'a>,
     sampling: &'a Sampling,
     rect: &'a Rect,
@@ -209,18 +247,17 @@ impl Job for TileJob<'_> {
     fn run<L: Lanes>(mut self) {
         self.scratch.slow.fill(0);
         self.scratch.pixels.fill(self.wide.background);
-        let among = self.plan.tiles.candidates(self.rect.columns.start, self.rect.rows.start);
         let samples = self.wide.samples;
         let n_pixels = self.rect.columns.len() * self.rect.rows.len();
         self.scratch.counts.eye_rays += n_pixels as u64 * u64::from(samples * samples);
-        if among.is_empty() {
+        if self.among.is_empty() {
             return;
         }
         self.scratch.sums.iter_mut().for_each(|sums| sums.fill(0.0));
         // The lanes of a packet are the same sample of neighbouring pixels.
         for sample in 0..samples * samples {
             self.sample = [sample % samples, sample / samples];
-            self.meet::<L>(among);
+            self.meet::<L>(self.among);
             self.scratch.hits.sort_unstable_by_key(|hit| (hit.face, hit.packet));
             self.shade::<L>();
         }
@@ -245,7 +282,7 @@ impl TileJob<'_> {
     /// Finds what each eye ray meets first.
     #[inline(always)]
     fn meet<L: Lanes>(&mut self, among: Candidates<'_>) {
-        let bounds = &self.wide.bounds;
+        let bounds = self.bounds;
         let n_packets = self.rect.columns.len().div_ceil(L::N);
         self.scratch.hits.clear();
         self.scratch.counts.tests += (n_packets * self.rect.rows.len() * among.len() * L::N) as u64;
@@ -321,7 +358,7 @@ impl TileJob<'_> {
     #[inline(always)]
     fn shade_packet<L: Lanes>(&mut self, hit: PacketHit) {
         let (packet, lanes) = (hit.packet as usize, L::Mask::from_bits(hit.lanes));
-        let face = &self.wide.bounds.faces[hit.face as usize];
+        let face = &self.bounds.faces[hit.face as usize];
         let terms = &self.wide.bounds.terms[face.surface];
         let at = self.points::<L>(face, packet, lanes);
         let colors = self.local::<L>(face, false, &at);
@@ -412,6 +449,9 @@ impl TileJob<'_> {
     /// Shades a packet of hits without their reflections, on one face or, if it is shared, on those of its group.
     #[inline(always)]
     fn local<L: Lanes>(&mut self, face: &Face, is_shared: bool, at: &Points<L>) -> Colors<L> {
+        if self.wide.is_crowd {
+            return self.local_in_crowd(face, at);
+        }
         let bounds = &self.wide.bounds;
         let shared = face.group.filter(|_| is_shared).map(|group| group as usize);
         let slot = shared.map_or_else(|| face_index(bounds, face), |group| bounds.faces.len() + group);
@@ -419,8 +459,23 @@ impl TileJob<'_> {
             Some(group) => LightOccluders::of_group(bounds, self.plan, &bounds.groups[group]),
             None => LightOccluders::new(bounds, self.plan, face),
         });
-        let colors = shade::shade(bounds, &bounds.terms[face.surface], occluders, at);
+        let colors = shade::shade(&bounds.lights, &bounds.terms[face.surface], occluders, at);
         self.scratch.counts.shadow_rays += u64::from(colors.shadow_rays);
+        colors
+    }
+
+    /// Does the work of [`TileJob::local`] with what is looked up for the packet.
+    #[inline(always)]
+    fn local_in_crowd<L: Lanes>(&mut self, face: &Face, at: &Points<L>) -> Colors<L> {
+        let (all, Scratch { around, counts, .. }) = (&self.wide.bounds, &mut *self.scratch);
+        let terms = &all.terms[face.surface];
+        let is_known = !(terms.has_diffuse || terms.has_specular) || around.look_up(all, self.plan, face, at);
+        if !is_known {
+            let zero = L::splat(0.0);
+            return Colors { color: [zero; 3], error: zero, doubt: at.active, shadow_rays: 0 };
+        }
+        let colors = shade::shade(&around.lights, terms, &around.occluders, at);
+        counts.shadow_rays += u64::from(colors.shadow_rays);
         colors
     }
 
@@ -442,8 +497,30 @@ impl TileJob<'_> {
     fn follow_packet<L: Lanes>(&mut self) {
         let (rays, active) = self.scratch.waiting.pop::<L>();
         let rays = &rays;
-        let bounds = &self.wide.bounds;
-        let among = self.plan.mirrored();
+        if !self.wide.is_crowd {
+            self.follow_among(self.plan.mirrored(), rays, active);
+            return;
+        }
+        let mut found = std::mem::take(&mut self.scratch.found);
+        let few = crowd::find_along(self.plan, rays, active, &mut found)
+            .then(|| Few::new(&self.wide.bounds, self.plan, &found))
+            .flatten();
+        self.scratch.found = found;
+        match few {
+            None => self.mark_places(rays.pixel, active),
+            Some(few) => {
+                let TileJob { wide, plan, sampling, rect, sample, .. } = *self;
+                let (bounds, among, scratch) = (&few.bounds, few.candidates(), &mut *self.scratch);
+                let mut job = TileJob { wide, bounds, among, plan, sampling, rect, scratch, sample };
+                job.follow_among(among, rays, active);
+            }
+        }
+    }
+
+    /// Follows a packet of rays to what it meets of the candidates.
+    #[inline(always)]
+    fn follow_among<L: Lanes>(&mut self, among: Candidates<'_>, rays: &Rays<L>, active: L::Mask) {
+        let bounds = self.bounds;
         self.scratch.counts.tests += among.len() as u64 * u64::from(active.bits().count_ones());
         let nearest = mirror::nearest_hit(bounds, among.spheres, among.cylinders, rays, active);
         self.mark_places(rays.pixel, active & nearest.doubt);

@@ -12,7 +12,7 @@
 //!   where n·H > 2⁻⁶.
 
 use crate::trace::kernels::{Lanes, Mask};
-use crate::trace::wide::bounds::{Bounds, Power, Terms, U};
+use crate::trace::wide::bounds::{Power, Terms, U, WideLight};
 use crate::trace::wide::shadow::{LightOccluders, shadow};
 
 /// Added before rounding down; the semantics fix it.
@@ -73,7 +73,13 @@ pub(super) fn splat_each<L: Lanes>([x, y, z]: [f64; 3]) -> [L; 3] {
 
 /// Shades a packet of hits without their reflections.
 #[inline(always)]
-pub(super) fn shade<L: Lanes>(bounds: &Bounds, terms: &Terms, occluders: &LightOccluders, at: &Points<L>) -> Colors<L> {
+#[allow(clippy::needless_range_loop, reason = "an adapter is not always inlined into a packet")]
+pub(super) fn shade<L: Lanes>(
+    lights: &[WideLight],
+    terms: &Terms,
+    occluders: &LightOccluders,
+    at: &Points<L>,
+) -> Colors<L> {
     let none = L::Mask::from_bits(0);
     let zero = L::splat(0.0);
     let mut colors = Colors { color: splat_each(terms.ambient), error: zero, doubt: none, shadow_rays: 0 };
@@ -84,8 +90,8 @@ pub(super) fn shade<L: Lanes>(bounds: &Bounds, terms: &Terms, occluders: &LightO
     let (half, one) = (L::splat(0.5), L::splat(1.0));
     let normal_slack = at.normal_error + L::splat(8.0 * U);
     let point_slack = at.point_error * L::splat(1026.0);
-    for light_idx in 0..bounds.lights.len().min(terms.lights.len()) {
-        let (light, light_terms) = (&bounds.lights[light_idx], &terms.lights[light_idx]);
+    for light_idx in 0..lights.len().min(terms.lights.len()) {
+        let (light, light_terms) = (&lights[light_idx], &terms.lights[light_idx]);
         let w: [L; 3] = [
             at.point[0] - L::splat(light.position[0]),
             at.point[1] - L::splat(light.position[1]),

@@ -26,6 +26,17 @@ pub(super) struct LightOccluders {
 }
 
 impl LightOccluders {
+    /// Says that what may hide a light are the first `n` of its spheres, and no cylinder.
+    pub fn number(&mut self, light_idx: usize, n: u32) {
+        if self.lists.len() <= light_idx {
+            self.lists.resize_with(light_idx + 1, Default::default);
+            self.hidden.resize(light_idx + 1, false);
+        }
+        let [spheres, _] = &mut self.lists[light_idx];
+        spheres.clear();
+        spheres.extend(0..n);
+    }
+
     /// Collects what the plan has left, without what shares the face's equation: a ray that leaves a face outward meets
     /// neither that face again nor, from a wall, anything inside of it. A cap that is level with the face is not met
     /// either; its cylinder lies wholly on the other side of the light, or stands on the face and has other faces.
