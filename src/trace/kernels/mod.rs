@@ -1,7 +1,7 @@
 //! The lanes: eight binary64 numbers that go through the same operations at once, on whatever the machine has for it.
 //!
 //! [`Lanes`] has the operations of IEEE 754 alone, each rounded once: no fused multiply-add, no approximate reciprocal. A
-//! computation written over it therefore gives the same bits on every backend; [`scalar`] is the specification. A
+//! computation written over it therefore gives the same bits on every backend; `scalar` is the specification. A
 //! computation is a [`Job`]; [`Backend::run`] instantiates it for the lanes of a backend, inside a function that may use
 //! the instructions of that backend.
 //!

@@ -122,6 +122,9 @@ pub(super) struct EyeCylinder {
 /// A wall as eye rays see it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct EyeWall {
+    pub radius_squared: f64,
+    /// Whether D is taken from the cross product.
+    pub is_far: bool,
     pub power: f64,
     pub power_low: f64,
     pub power_high: f64,
@@ -518,6 +521,8 @@ fn eye_cylinder(scene: &Scene<'_>, eye: Eye, i: usize, faces: &mut Vec<Face>) ->
     let wall = seen.map(|seen| {
         let slack = 2.0 * seen.error / seen.cosine + 4.0 * U * y_min.abs().max(y_max.abs());
         EyeWall {
+            radius_squared: radius * radius,
+            is_far: seen.is_far,
             power: seen.power,
             power_low: seen.power_low,
             power_high: seen.power_high,

@@ -173,7 +173,12 @@ fn meet_wall<L: Lanes>(
         return maybe;
     }
     let sure = maybe & b_squared.gt(rays.a_wall * L::splat(wall.power_high));
-    let discriminant = b_squared - rays.a_wall * L::splat(wall.power);
+    let discriminant = if wall.is_far {
+        let cross = rays.dx * L::splat(cylinder.z) + L::splat(cylinder.x);
+        rays.a_wall * L::splat(wall.radius_squared) - cross * cross
+    } else {
+        b_squared - rays.a_wall * L::splat(wall.power)
+    };
     let t = L::splat(wall.power) / (b + discriminant.sqrt());
     let height = t * L::splat(rays.dy);
     let hit = sure & height.gt(L::splat(wall.floor)) & height.lt(L::splat(wall.ceiling));

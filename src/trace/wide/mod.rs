@@ -23,6 +23,9 @@ mod mirror;
 mod shade;
 mod shadow;
 
+#[cfg(test)]
+mod tests;
+
 use std::ops::Range;
 
 use crate::math::{Ball64, Real};
