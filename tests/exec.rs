@@ -7,12 +7,12 @@ use std::sync::Mutex;
 use std::time::Duration;
 
 use clisc::exec::{
-    CancellationToken, Event, ExecError, ImageRequest, MemorySink, Observer, Options, Refusal, Sink, SinkError, Step,
-    WriteReport, execute,
+    CancellationToken, Event, ExecError, ImageRequest, MemorySink, Observer, Options, Origin, Refusal, Sink, SinkError,
+    Step, WriteReport, execute,
 };
 use clisc::image::{RgbImage, decode_png, encode_png};
 use clisc::ir::{self, Command, Program, Registers, SceneView, Valid};
-use clisc::plan::{Settings, Size, plan};
+use clisc::plan::{Pass, Passes, Settings, Size, plan};
 use clisc::source::Span;
 use clisc::trace::Tracer;
 use glam::DVec3;
@@ -156,7 +156,7 @@ impl Observer for Log {
 
 #[test]
 fn the_observer_is_told_in_order() {
-    let program = program(vec![write("a.png"), write("b.png")]);
+    let program = program(vec![write("a.png"), RED, write("b.png")]);
     let settings = &settings(1024, 1500);
     let cancellation = &CancellationToken::new();
     let bands = (1..=94).map(|n| 1500.min(16 * n)).collect::<Vec<_>>();
@@ -337,4 +337,105 @@ fn the_sink_may_refuse_a_name_too() {
     let found: Vec<_> = diagnostics.iter().map(|d| (d.code.id, d.primary.span.start)).collect();
     assert_eq!(found, [("E0503", 1), ("E0502", 2)]);
     assert_eq!(diagnostics[0].message, "the file name `link/b.png` leads out of the output folder, to `/elsewhere`");
+}
+
+/// Compiles a scene.
+fn compiled(text: &str) -> Valid {
+    let compilation = clisc::compile(&clisc::source::Source::new("a.cli", text));
+    assert!(!compilation.has_errors(), "{text}");
+    ir::validate(compilation.program).expect("a sound program")
+}
+
+/// Executes with and without the pass `writes`, on some numbers of threads; checks that the files are the same, and
+/// returns where the images came from.
+fn origins(text: &str, settings: &Settings) -> Vec<Origin> {
+    let program = compiled(text);
+    let without = Settings { passes: Passes::all().without(Pass::Writes), ..settings.clone() };
+    let mut expected = MemorySink::default();
+    let traced = run(&program, &without, &mut expected).unwrap();
+    assert!(traced.iter().all(|report| report.origin == Origin::Traced));
+    let mut origins = Vec::new();
+    for n_threads in [1, 2, 20] {
+        let mut sink = MemorySink::default();
+        let reports = in_pool(n_threads, || run(&program, settings, &mut sink)).unwrap();
+        assert!(sink == expected, "{n_threads} threads: {text}");
+        for (report, traced) in reports.iter().zip(&traced) {
+            assert_eq!(report.n_bytes, traced.n_bytes, "{}", report.name);
+            assert!(report.counts.eye_rays <= traced.counts.eye_rays);
+        }
+        origins = reports.iter().map(|report| report.origin).collect();
+    }
+    origins
+}
+
+const BALL: &str = "fov 60\nlight 1 1 1 3 4 0\nsurface .1 .1 .1 .6 .3 .2 .2 .2 .2 9 0\nsphere -1 0 -5 1\n";
+
+#[test]
+fn one_scene_is_traced_once() {
+    let settings = settings(300, 200);
+    let text = format!(
+        "{BALL}write a.png\nwrite b.png\nfov 30\nwrite c.png\nfov 60\nlight 0 0 0 1 1 1\n\
+        sphere -1 0 -5 .5\nsphere 0 0 9 1\nwrite d.png\nwrite a.png\n"
+    );
+    let copied = Origin::CopiedFrom { write_idx: 0 };
+    assert_eq!(origins(&text, &settings), [Origin::Traced, copied, Origin::Traced, copied, copied]);
+}
+
+#[test]
+fn pixels_that_a_write_cannot_change_are_kept() {
+    let settings = settings(640, 480);
+    let text = format!("{BALL}write a.png\nsphere 1.5 1 -5 .3\nwrite b.png\nsphere 1.5 -1 -5 .3\nwrite c.png\n");
+    let [
+        Origin::Traced,
+        Origin::SharedWith { write_idx: 0, n_traced_tiles, n_tiles },
+        Origin::SharedWith { write_idx: 1, .. },
+    ] = origins(&text, &settings)[..]
+    else {
+        panic!("nothing is shared");
+    };
+    assert!(0 < n_traced_tiles && n_traced_tiles * 4 < n_tiles, "{n_traced_tiles} of {n_tiles}");
+}
+
+#[test]
+fn a_copy_is_whole_or_not_there() {
+    let program = compiled(&format!("{BALL}write a.png\nwrite b.png\n"));
+    let settings = &settings(30, 20);
+    let token = CancellationToken::new();
+    let options = Options { settings, observer: &CancelsAt(1, &token), cancellation: &token };
+    let mut sink = MemorySink::default();
+    assert!(matches!(execute(&program, options, &mut sink), Err(ExecError::Cancelled)));
+    assert_eq!(sink.files.keys().collect::<Vec<_>>(), ["a.png"]);
+
+    let mut sink = FullAtSecond { n_created: 0 };
+    let error = run(&program, settings, &mut sink).unwrap_err();
+    assert_eq!(error.to_string(), "cannot write `b.png`");
+}
+
+/// Cancels when a `write` begins.
+struct CancelsAt<'a>(usize, &'a CancellationToken);
+
+impl Observer for CancelsAt<'_> {
+    fn event(&self, event: &Event<'_>) {
+        if matches!(event, Event::Started { write_idx, .. } if *write_idx == self.0) {
+            self.1.cancel();
+        }
+    }
+}
+
+/// Has room for one file.
+struct FullAtSecond {
+    n_created: u32,
+}
+
+impl Sink for FullAtSecond {
+    type File = Box<dyn io::Write + Send>;
+
+    fn create(&mut self, _: &ImageRequest<'_>) -> Result<Self::File, SinkError> {
+        self.n_created += 1;
+        Ok(if self.n_created == 1 { Box::new(io::sink()) } else { Box::new(FullDisk) })
+    }
+
+    fn commit(&mut self, _: Self::File) -> Result<(), SinkError> {
+        Ok(())
+    }
 }

@@ -1,13 +1,15 @@
 //! The executor: a valid program in, images in a sink out.
 //!
 //! [`execute`] walks the command list; each `write` is traced and encoded in bands of rows by all threads, and the bands
-//! are written in order, so that memory does not grow with the image. Where images go ([`Sink`]), who watches
+//! are written in order, so that memory does not grow with the image. What a later `write` shares with an earlier one is
+//! not traced again, as far as it is small enough to be kept. Where images go ([`Sink`]), who watches
 //! ([`Observer`]) and what ends it early ([`CancellationToken`]) are parameters: a command line, a test and a web page
 //! drive the same code. Every name is looked at before anything is rendered.
 //!
 //! Never here: files, the clock, threads of its own (it works in the current rayon pool).
 
 mod cancel;
+mod earlier;
 mod in_order;
 mod name;
 mod observe;
@@ -18,12 +20,13 @@ mod write;
 
 pub use cancel::CancellationToken;
 pub use name::{Refusal, refuse_name, refused_names};
-pub use observe::{Event, Observer, WriteReport};
+pub use observe::{Event, Observer, Origin, WriteReport};
 pub use sink::{ImageRequest, MemoryFile, MemorySink, Sink, SinkError, Step};
 
 use std::io;
 
 use crate::diag::Diagnostic;
+use crate::exec::earlier::Earlier;
 use crate::exec::write::Write;
 use crate::ir::{Command, Registers, SceneView, Valid};
 use crate::plan::Settings;
@@ -90,12 +93,13 @@ pub fn execute<S: Sink>(program: &Valid, options: Options<'_>, sink: &mut S) -> 
     }
     let mut reports = Vec::new();
     let mut registers = Registers::default();
+    let mut earlier = Earlier::new(program, options.settings);
     for (idx, command) in program.commands.iter().enumerate() {
         registers.step(command);
         if let Command::Write(name) = command {
             let view = SceneView::new(program, registers);
             let write = Write { program, command_idx: idx, write_idx: reports.len(), name, options };
-            reports.push(write.run(view, sink)?);
+            reports.push(write.run(view, &mut earlier, sink)?);
         }
     }
     Ok(reports)

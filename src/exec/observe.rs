@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use crate::plan::Size;
+use crate::plan::{Savings, Size};
 use crate::trace::Counts;
 
 /// Watches an execution. Any thread of the pool may call it, but events come one at a time and in order; `()` watches
@@ -45,6 +45,28 @@ pub enum Event<'a> {
     Finished(&'a WriteReport),
 }
 
+/// Where the pixels of an image come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Origin {
+    /// All are traced.
+    Traced,
+    /// All are those of an earlier `write`, whose file is copied.
+    CopiedFrom {
+        /// Which `write` of the program it is, from 0.
+        write_idx: usize,
+    },
+    /// Some are those of an earlier `write`, the others are traced.
+    SharedWith {
+        /// Which `write` of the program it is, from 0.
+        write_idx: usize,
+        /// Tiles that are traced.
+        n_traced_tiles: usize,
+        /// All tiles.
+        n_tiles: usize,
+    },
+}
+
 /// What a `write` made and what it took.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct WriteReport {
@@ -56,6 +78,10 @@ pub struct WriteReport {
     pub size: Size,
     /// Length of the file.
     pub n_bytes: u64,
+    /// Where its pixels come from.
+    pub origin: Origin,
+    /// What its plan leaves out before any ray is cast.
+    pub savings: Savings,
     /// Rays and tests.
     pub counts: Counts,
     /// Time that threads spent tracing, added up. While they share rows each is counted from the beginning to the end.

@@ -3,10 +3,14 @@
 use std::io;
 use std::time::Duration;
 
-use crate::exec::{Event, ExecError, ImageRequest, Options, Sink, SinkError, WriteReport};
+use crate::exec::earlier::Earlier;
+use crate::exec::{Event, ExecError, ImageRequest, Options, Origin, Sink, SinkError, WriteReport};
 use crate::ir::{SceneView, Valid};
-use crate::plan::plan;
+use crate::plan::{Savings, plan};
 use crate::trace::{Counts, Tracer};
+
+/// What is copied between two looks at the cancellation.
+const CHUNK_BYTES: usize = 1 << 20;
 
 /// One `write` on its way.
 pub(super) struct Write<'a> {
@@ -18,8 +22,13 @@ pub(super) struct Write<'a> {
 }
 
 impl Write<'_> {
-    /// Renders the scene as it stands in `view`, and saves it.
-    pub fn run<S: Sink>(&self, view: SceneView<'_>, sink: &mut S) -> Result<WriteReport, ExecError> {
+    /// Renders the scene as it stands in `view`, and saves it; takes what it shares with `earlier` images from there.
+    pub fn run<S: Sink>(
+        &self,
+        view: SceneView<'_>,
+        earlier: &mut Earlier,
+        sink: &mut S,
+    ) -> Result<WriteReport, ExecError> {
         let Options { settings, observer, .. } = self.options;
         let size = settings.size;
         let start = observer.now();
@@ -27,7 +36,7 @@ impl Write<'_> {
         self.check_cancelled()?;
         let file = sink.create(&ImageRequest { name: self.name, size }).map_err(|error| self.sink_error(error))?;
         let mut report = self.new_report();
-        let file = self.stream(&Tracer::new(plan(view, settings)), file, &mut report)?;
+        let file = self.fill(view, earlier, file, &mut report)?;
         let (saved, save_time) = self.timed(|| sink.commit(file));
         saved.map_err(|error| self.sink_error(error))?;
         report.save_time = save_time;
@@ -36,12 +45,70 @@ impl Write<'_> {
         Ok(report)
     }
 
+    /// Makes the image in `file`: copied, traced upon an earlier one, or traced.
+    fn fill<F: io::Write + Send>(
+        &self,
+        view: SceneView<'_>,
+        earlier: &mut Earlier,
+        file: F,
+        report: &mut WriteReport,
+    ) -> Result<F, ExecError> {
+        if let Some((write_idx, bytes)) = earlier.same_scene(self.write_idx) {
+            return self.copy(write_idx, bytes, file, report);
+        }
+        let plan = plan(view, self.options.settings);
+        report.savings = plan.savings();
+        if let Some((write_idx, bytes)) = earlier.same_image(&plan) {
+            return self.copy(write_idx, bytes, file, report);
+        }
+        let mut file = Kept::new(file, earlier.n_bytes_to_keep(self.write_idx));
+        let shared = earlier.shared_pixels(&plan);
+        if let Some((write_idx, changed)) = &shared {
+            let (n_traced_tiles, n_tiles) = (changed.n_tiles(), changed.n_all_tiles());
+            report.origin = Origin::SharedWith { write_idx: *write_idx, n_traced_tiles, n_tiles };
+        }
+        let canvas = earlier.canvas(self.write_idx, &plan, shared.is_some());
+        let tracer = Tracer::new(plan);
+        let tracer = match canvas {
+            Some(canvas) => tracer.upon(canvas, shared.map(|(_, changed)| changed)),
+            None => tracer,
+        };
+        file = self.stream(&tracer, file, report)?;
+        if let Some(bytes) = file.bytes {
+            earlier.keep_file(self.write_idx, bytes);
+        }
+        Ok(file.inner)
+    }
+
+    /// Copies the file of an earlier `write`.
+    fn copy<F: io::Write>(
+        &self,
+        write_idx: usize,
+        bytes: &[u8],
+        mut file: F,
+        report: &mut WriteReport,
+    ) -> Result<F, ExecError> {
+        report.origin = Origin::CopiedFrom { write_idx };
+        for chunk in bytes.chunks(CHUNK_BYTES) {
+            self.check_cancelled()?;
+            let (written, time) = self.timed(|| file.write_all(chunk));
+            report.encode_time += time;
+            written.map_err(|error| self.write_error(error))?;
+        }
+        report.n_bytes = bytes.len() as u64;
+        let n_rows = report.size.height();
+        self.options.observer.event(&Event::RowsDone { write_idx: self.write_idx, n_rows });
+        Ok(file)
+    }
+
     fn new_report(&self) -> WriteReport {
         WriteReport {
             write_idx: self.write_idx,
             name: self.name.to_owned(),
             size: self.options.settings.size,
             n_bytes: 0,
+            origin: Origin::Traced,
+            savings: Savings::default(),
             counts: Counts::default(),
             trace_time: Duration::ZERO,
             encode_time: Duration::ZERO,
@@ -69,5 +136,33 @@ impl Write<'_> {
 
     pub(super) fn write_error(&self, source: io::Error) -> ExecError {
         ExecError::Write { name: self.name.to_owned(), source }
+    }
+}
+
+/// A file of which a copy is kept while it is small.
+struct Kept<F> {
+    inner: F,
+    bytes: Option<Vec<u8>>,
+    max_bytes: usize,
+}
+
+impl<F> Kept<F> {
+    fn new(inner: F, max_bytes: usize) -> Self {
+        Self { inner, bytes: (max_bytes > 0).then(Vec::new), max_bytes }
+    }
+}
+
+impl<F: io::Write> io::Write for Kept<F> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let n_written = self.inner.write(bytes)?;
+        match &mut self.bytes {
+            Some(kept) if kept.len() + n_written <= self.max_bytes => kept.extend_from_slice(&bytes[..n_written]),
+            kept => *kept = None,
+        }
+        Ok(n_written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.inner.flush()
     }
 }

@@ -86,6 +86,11 @@ impl ListTable {
         self.spans.len()
     }
 
+    /// Returns how many objects all lists have together.
+    pub fn n_entries(&self) -> usize {
+        self.indices.len()
+    }
+
     /// Leaves out objects that are in no list, and renumbers the others; each object has as many lists of its own, in the
     /// order of the objects, which go with it.
     pub fn retain(&mut self, n_objects: usize, keep: impl Fn(usize) -> bool) {

@@ -42,6 +42,12 @@ impl TileMask {
         self.has[(row / self.tile_height) as usize * self.n_columns + (column / self.tile_width) as usize]
     }
 
+    /// Returns how many tiles the image has.
+    #[must_use]
+    pub fn n_all_tiles(&self) -> usize {
+        self.has.len()
+    }
+
     /// Returns how many tiles are in the set.
     #[must_use]
     pub fn n_tiles(&self) -> usize {

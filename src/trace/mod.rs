@@ -12,6 +12,7 @@
 //! Never here: files, encoding, progress (see `exec`); an epsilon.
 
 mod camera;
+mod canvas;
 mod counts;
 mod integrator;
 mod intersect;
@@ -24,6 +25,7 @@ mod reject;
 mod shade;
 mod wide;
 
+pub use canvas::Canvas;
 pub use counts::Counts;
 
 use std::ops::Range;
@@ -31,7 +33,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use crate::math::{Ball64, Ball106};
-use crate::plan::{Plan, Settings};
+use crate::plan::{Plan, Settings, TileMask};
 use crate::trace::camera::Camera;
 use crate::trace::integrator::Integrator;
 use crate::trace::kernels::Backend;
@@ -46,6 +48,15 @@ pub struct Tracer<'p> {
     camera: Camera<Ball64>,
     fine_camera: Camera<Ball106>,
     wide: Option<Wide>,
+    upon: Option<Upon<'p>>,
+}
+
+/// An earlier image that an image is traced upon.
+#[derive(Debug)]
+struct Upon<'p> {
+    canvas: &'p Canvas,
+    /// The tiles that may differ; without it all do.
+    changed: Option<TileMask>,
 }
 
 impl<'p> Tracer<'p> {
@@ -77,7 +88,15 @@ impl<'p> Tracer<'p> {
             fine_camera: Camera::new(plan.fov_deg, sampling.steps_per_half_height()),
             sampling,
             plan,
+            upon: None,
         }
+    }
+
+    /// Takes the pixels outside of the tiles that may have changed from a canvas, and leaves all pixels there. Rows that
+    /// are not rendered, because they are proved to be background, are taken to be that on the canvas too.
+    #[must_use]
+    pub fn upon(self, canvas: &'p Canvas, changed: Option<TileMask>) -> Self {
+        Self { upon: Some(Upon { canvas, changed }), ..self }
     }
 
     /// Renders `rows` into `rgb`, 3 bytes a pixel, row by row from the top, on all threads of the current rayon pool.
@@ -125,6 +144,25 @@ impl<'p> Tracer<'p> {
     /// # Panics
     /// As [`Tracer::render_rows`].
     pub fn render_band(&self, rows: Range<u32>, rgb: &mut [u8], is_cancelled: &(dyn Fn() -> bool + Sync)) -> Counts {
+        let Some(Upon { canvas, changed }) = &self.upon else {
+            return self.trace_band(rows, rgb, is_cancelled);
+        };
+        if changed.is_some() {
+            canvas.get(&rows, rgb);
+        }
+        let counts = self.trace_band(rows.clone(), rgb, is_cancelled);
+        canvas.put(&rows, rgb);
+        counts
+    }
+
+    /// Tells whether a pixel has to be traced.
+    fn is_new(&self, column: u32, row: u32) -> bool {
+        let changed = self.upon.as_ref().and_then(|upon| upon.changed.as_ref());
+        changed.is_none_or(|changed| changed.contains(column, row))
+    }
+
+    /// Traces the pixels of a band that are new.
+    fn trace_band(&self, rows: Range<u32>, rgb: &mut [u8], is_cancelled: &(dyn Fn() -> bool + Sync)) -> Counts {
         self.assert_fits(&rows, rgb);
         let mut settler = Settler::new(self);
         let Some(wide) = &self.wide else {
@@ -136,6 +174,9 @@ impl<'p> Tracer<'p> {
         for rect in Wide::tiles(&self.plan, rows.clone()) {
             if is_cancelled() {
                 break;
+            }
+            if !self.is_new(rect.columns.start, rect.rows.start) {
+                continue;
             }
             wide.trace(&self.plan, &self.sampling, &rect, &mut scratch);
             scratch.write(&rect, rgb, width, rows.start);
@@ -200,7 +241,9 @@ impl<'a, 'p> Settler<'a, 'p> {
                 if is_cancelled() {
                     return;
                 }
-                rgb.copy_from_slice(&self.settle(column, row));
+                if self.tracer.is_new(column, row) {
+                    rgb.copy_from_slice(&self.settle(column, row));
+                }
             }
         }
     }

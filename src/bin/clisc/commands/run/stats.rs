@@ -4,7 +4,8 @@ use std::fmt::Write;
 use std::path::Path;
 use std::time::Duration;
 
-use clisc::exec::WriteReport;
+use clisc::exec::{Origin, WriteReport};
+use clisc::plan::Savings;
 use clisc::trace::Counts;
 use serde::{Serialize, Serializer};
 
@@ -45,6 +46,8 @@ pub struct SceneStats {
     save: Duration,
     #[serde(flatten)]
     counts: Counts,
+    /// What the plans of the images left out.
+    skipped: Savings,
     images: Vec<ImageStats>,
 }
 
@@ -65,6 +68,12 @@ struct ImageStats {
     total: Duration,
     #[serde(flatten)]
     counts: Counts,
+    /// What its plan left out.
+    skipped: Savings,
+    /// The earlier `write`, from 0, of which it has all pixels, or all but those of the tiles that are traced.
+    shares_with: Option<usize>,
+    /// Tiles that are traced, when it shares pixels.
+    traced_tiles: Option<usize>,
 }
 
 fn seconds<S: Serializer>(time: &Duration, serializer: S) -> Result<S::Ok, S::Error> {
@@ -100,6 +109,7 @@ impl SceneStats {
             encode: Duration::ZERO,
             save: Duration::ZERO,
             counts: Counts::default(),
+            skipped: Savings::default(),
             images: Vec::new(),
         }
     }
@@ -111,6 +121,8 @@ impl SceneStats {
             self.encode += report.encode_time;
             self.save += report.save_time;
             self.counts += report.counts;
+            self.skipped += report.savings;
+            let (shares_with, traced_tiles) = shared(report.origin);
             self.images.push(ImageStats {
                 path: disk::shown(out_dir, &report.name).display().to_string(),
                 width: report.size.width(),
@@ -121,6 +133,9 @@ impl SceneStats {
                 save: report.save_time,
                 total: report.total_time,
                 counts: report.counts,
+                skipped: report.savings,
+                shares_with,
+                traced_tiles,
             });
         }
     }
@@ -151,6 +166,42 @@ impl SceneStats {
         for (what, count) in counts {
             let _ = writeln!(table, "  {what:<15} {count:>14}");
         }
+        self.add_skipped(&mut table);
         table
+    }
+
+    /// Adds what was left out, and where pixels came from.
+    fn add_skipped(&self, table: &mut String) {
+        let skipped = &self.skipped;
+        let rows = [
+            ("objects left out", skipped.objects_left_out),
+            ("lights left out", skipped.lights_left_out),
+            ("terms not computed", skipped.terms_not_computed),
+            ("occluders left out", skipped.occluders_left_out),
+            ("tiles not visited", skipped.tiles_not_visited),
+            ("eye rays not cast", skipped.eye_rays_not_cast),
+            ("eye tests not made", skipped.eye_tests_not_made),
+        ];
+        let _ = writeln!(table, "skipped");
+        for (what, count) in rows {
+            let _ = writeln!(table, "  {what:<18} {count:>14}");
+        }
+        for image in &self.images {
+            let path = &image.path;
+            let _ = match (image.shares_with, image.traced_tiles) {
+                (Some(write), Some(n)) => writeln!(table, "  {path} shares all but {n} tiles with write {write}"),
+                (Some(write), None) => writeln!(table, "  {path} is the image of write {write}"),
+                (None, _) => Ok(()),
+            };
+        }
+    }
+}
+
+/// Returns the earlier `write` that an image shares pixels with, and the tiles that it does not, if it shares some alone.
+fn shared(origin: Origin) -> (Option<usize>, Option<usize>) {
+    match origin {
+        Origin::CopiedFrom { write_idx } => (Some(write_idx), None),
+        Origin::SharedWith { write_idx, n_traced_tiles, .. } => (Some(write_idx), Some(n_traced_tiles)),
+        _ => (None, None),
     }
 }
