@@ -13,6 +13,8 @@ pub struct Counts {
     pub shadow_rays: u64,
     /// Tests of one ray against one primitive.
     pub tests: u64,
+    /// Pixels that were traced in binary32, of which nothing is proved.
+    pub draft_pixels: u64,
     /// Pixels that packets left to be settled one by one.
     pub settled_pixels: u64,
     /// Pixels that binary64 could not decide and double-double did.
@@ -27,6 +29,7 @@ impl AddAssign for Counts {
         self.reflected_rays += other.reflected_rays;
         self.shadow_rays += other.shadow_rays;
         self.tests += other.tests;
+        self.draft_pixels += other.draft_pixels;
         self.settled_pixels += other.settled_pixels;
         self.refined_pixels += other.refined_pixels;
         self.ties += other.ties;

@@ -14,6 +14,7 @@
 mod camera;
 mod canvas;
 mod counts;
+mod draft;
 mod integrator;
 mod intersect;
 mod judge;
@@ -32,9 +33,10 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use crate::math::{Ball64, Ball106};
+use crate::math::{Ball64, Ball106, Real};
 use crate::plan::{Plan, Settings, TileMask};
 use crate::trace::camera::Camera;
+use crate::trace::draft::Draft;
 use crate::trace::integrator::Integrator;
 use crate::trace::kernels::Backend;
 use crate::trace::pixel::Sampling;
@@ -47,6 +49,7 @@ pub struct Tracer<'p> {
     sampling: Sampling,
     camera: Camera<Ball64>,
     fine_camera: Camera<Ball106>,
+    draft: Option<Draft>,
     wide: Option<Wide>,
     upon: Option<Upon<'p>>,
 }
@@ -82,8 +85,11 @@ impl<'p> Tracer<'p> {
         assert!(plan.settings.max_level <= Settings::MAX_LEVEL, "at most {} levels", Settings::MAX_LEVEL);
         let sampling = Sampling::new(&plan.settings);
         let camera: Camera<Ball64> = Camera::new(plan.fov_deg, sampling.steps_per_half_height());
+        let draft = Draft::new(&plan, camera.step().value(), backend.unwrap_or(Backend::Scalar));
+        let wide_backend = backend.filter(|_| draft.is_none());
         Self {
-            wide: backend.and_then(|backend| Wide::new(&plan, camera.step(), backend)),
+            draft,
+            wide: wide_backend.and_then(|backend| Wide::new(&plan, camera.step(), backend)),
             camera,
             fine_camera: Camera::new(plan.fov_deg, sampling.steps_per_half_height()),
             sampling,
@@ -164,6 +170,9 @@ impl<'p> Tracer<'p> {
     /// Traces the pixels of a band that are new.
     fn trace_band(&self, rows: Range<u32>, rgb: &mut [u8], is_cancelled: &(dyn Fn() -> bool + Sync)) -> Counts {
         self.assert_fits(&rows, rgb);
+        if let Some(draft) = &self.draft {
+            return self.draft_band(draft, rows, rgb, is_cancelled);
+        }
         let mut settler = Settler::new(self);
         let Some(wide) = &self.wide else {
             settler.settle_all(rows, rgb, is_cancelled);
@@ -190,6 +199,26 @@ impl<'p> Tracer<'p> {
         let mut counts = settler.counts();
         counts += scratch.counts;
         counts
+    }
+
+    /// Does the work of [`Tracer::render_band`] in binary32.
+    fn draft_band(
+        &self,
+        draft: &Draft,
+        rows: Range<u32>,
+        rgb: &mut [u8],
+        is_cancelled: &(dyn Fn() -> bool + Sync),
+    ) -> Counts {
+        let width = self.plan.settings.size.width() as usize;
+        let mut scratch = draft.scratch();
+        for rect in Wide::tiles(&self.plan, rows.clone()) {
+            if is_cancelled() {
+                break;
+            }
+            draft.trace(&self.plan, &self.sampling, &rect, &mut scratch);
+            scratch.write(&rect, rgb, width, rows.start);
+        }
+        scratch.counts
     }
 
     /// Returns the colour that all pixels of these rows are proved to have, if they are.

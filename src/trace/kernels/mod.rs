@@ -1,6 +1,7 @@
-//! The lanes: eight binary64 numbers that go through the same operations at once, on whatever the machine has for it.
+//! The lanes: eight binary64 numbers, or sixteen of binary32, that go through the same operations at once, on whatever the
+//! machine has for it.
 //!
-//! [`Lanes`] has the operations of IEEE 754 alone, each rounded once: no fused multiply-add, no approximate reciprocal. A
+//! [`Numbers`] has the operations of IEEE 754 alone, each rounded once: no fused multiply-add, no approximate reciprocal. A
 //! computation written over it therefore gives the same bits on every backend; `scalar` is the specification. A
 //! computation is a [`Job`]; [`Backend::run`] instantiates it for the lanes of a backend, inside a function that may use
 //! the instructions of that backend.
@@ -38,7 +39,7 @@ pub trait Mask: Copy + Debug + BitAnd<Output = Self> + BitOr<Output = Self> + No
 
 /// Some numbers side by side. Every operation is carried out lane by lane and rounded once, to the nearest, as IEEE 754
 /// says.
-pub trait Lanes:
+pub trait Numbers:
     Copy + Debug + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
     /// How many.
@@ -47,26 +48,29 @@ pub trait Lanes:
     /// What comparisons give.
     type Mask: Mask;
 
-    /// Makes every lane the same number.
+    /// What each lane is.
+    type Element: Copy;
+
+    /// Makes every lane the same number, rounded if need be.
     fn splat(number: f64) -> Self;
 
     /// Reads the first `N` numbers.
     ///
     /// # Panics
     /// When there are fewer.
-    fn load(from: &[f64]) -> Self;
+    fn load(from: &[Self::Element]) -> Self;
 
     /// Writes the first `N` numbers.
     ///
     /// # Panics
     /// When there is room for fewer.
-    fn store(self, to: &mut [f64]);
+    fn store(self, to: &mut [Self::Element]);
 
     /// Writes the lanes of the mask side by side, and anything into the rest of the first `N` places.
     ///
     /// # Panics
     /// When there is room for fewer than `N`.
-    fn store_packed(self, mask: Self::Mask, to: &mut [f64]);
+    fn store_packed(self, mask: Self::Mask, to: &mut [Self::Element]);
 
     /// Writes the lanes of the mask, which must be whole numbers from 0 to 2³¹ − 1, each into its place of the first `N`.
     ///
@@ -114,6 +118,17 @@ pub trait Lanes:
     }
 }
 
+/// Some binary64 numbers.
+pub trait Lanes: Numbers<Element = f64> {}
+
+impl<L: Numbers<Element = f64>> Lanes for L {}
+
+/// Some binary32 numbers.
+pub trait SingleLanes: Numbers<Element = f32> {
+    /// Makes every lane the same number.
+    fn same(number: f32) -> Self;
+}
+
 /// A computation over lanes of whatever kind. To be compiled for a backend it must be inlined into it, so
 /// [`run`](Job::run), and all that it calls on lanes, is `#[inline(always)]`.
 pub trait Job {
@@ -122,6 +137,15 @@ pub trait Job {
 
     /// Computes it.
     fn run<L: Lanes>(self) -> Self::Output;
+}
+
+/// A computation over binary32 lanes of whatever kind; what is said of a [`Job`] holds for it.
+pub trait SingleJob {
+    /// What comes out.
+    type Output;
+
+    /// Computes it.
+    fn run<L: SingleLanes>(self) -> Self::Output;
 }
 
 /// What the lanes are made of.
@@ -183,6 +207,23 @@ impl Backend {
             #[cfg(target_arch = "x86_64")]
             Self::Avx512 => unsafe { avx512::run(job) },
             _ => job.run::<scalar::Lanes8>(),
+        }
+    }
+
+    /// Carries out a job on binary32 numbers.
+    ///
+    /// # Panics
+    /// When the machine lacks the instructions.
+    pub fn run_single<J: SingleJob>(self, job: J) -> J::Output {
+        assert!(self.is_available(), "this machine has no {}", self.name());
+        match self {
+            // SAFETY: the machine has the instructions, as was just asserted.
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2 => unsafe { avx2::run_single(job) },
+            // SAFETY: the machine has the instructions, as was just asserted.
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512 => unsafe { avx512::run_single(job) },
+            _ => job.run::<scalar::single::Lanes16>(),
         }
     }
 }

@@ -3,18 +3,23 @@
 use super::*;
 use crate::testing::Stream;
 
-/// All operations on three packets; what comes out, bit by bit.
-struct EveryOperation<'a> {
-    a: &'a [f64; 8],
-    b: &'a [f64; 8],
+/// All operations on two packets and a mask; what comes out, bit by bit.
+#[derive(Clone, Copy)]
+struct EveryOperation<'a, E> {
+    a: &'a [E; 16],
+    b: &'a [E; 16],
     bits: u32,
 }
 
-impl Job for EveryOperation<'_> {
-    type Output = Vec<u64>;
+/// A NaN has many bit patterns, and IEEE 754 says nothing of which.
+fn bits_of(number: impl Into<f64>) -> u64 {
+    let number = number.into();
+    if number.is_nan() { u64::MAX } else { number.to_bits() }
+}
 
+impl<E: Copy + Default + Into<f64>> EveryOperation<'_, E> {
     #[inline(always)]
-    fn run<L: Lanes>(self) -> Vec<u64> {
+    fn all<L: Numbers<Element = E>>(self) -> Vec<u64> {
         let (a, b) = (L::load(self.a), L::load(self.b));
         let mask = L::Mask::from_bits(self.bits);
         let results = [
@@ -29,35 +34,49 @@ impl Job for EveryOperation<'_> {
             a.min(b),
             a.max(b),
             L::select(mask, a, b),
-            L::splat(self.a[0]),
+            L::splat(self.a[0].into()),
         ];
         let mut out = Vec::new();
         for result in results {
-            let mut lanes = [0.0; 8];
+            let mut lanes = [E::default(); 16];
             result.store(&mut lanes);
-            // A NaN has many bit patterns, and IEEE 754 says nothing of which.
-            out.extend(lanes.map(|lane| if lane.is_nan() { u64::MAX } else { lane.to_bits() }));
+            out.extend(lanes[..L::N].iter().map(|&lane| bits_of(lane)));
         }
         let masks = [a.lt(b), a.le(b), a.eq(b), a.gt(b), a.ge(b), mask, !mask, mask & a.lt(b), mask | a.eq(b)];
         for mask in masks {
             out.push(mask.bits().into());
             out.push(mask.any().into());
         }
-        let mut packed = [0.0; 8];
+        let mut packed = [E::default(); 16];
         a.store_packed(mask, &mut packed);
         let n_packed = mask.bits().count_ones() as usize;
-        out.extend(packed[..n_packed].iter().map(|lane| if lane.is_nan() { u64::MAX } else { lane.to_bits() }));
-        let mut whole = [7; 8];
+        out.extend(packed[..n_packed].iter().map(|&lane| bits_of(lane)));
+        let mut whole = [7; 16];
         (a.abs().min(L::splat(1e6)).max(L::splat(0.0))).floor().store_whole(mask, &mut whole);
         out.extend(whole.map(u64::from));
         out
     }
 }
 
-fn assert_agrees(a: &[f64; 8], b: &[f64; 8], bits: u32) {
-    let expected = Backend::Scalar.run(EveryOperation { a, b, bits });
-    for backend in Backend::ALL.into_iter().filter(|backend| backend.is_available()) {
-        assert_eq!(backend.run(EveryOperation { a, b, bits }), expected, "{}: {a:?} {b:?} {bits:b}", backend.name());
+impl Job for EveryOperation<'_, f64> {
+    type Output = Vec<u64>;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> Vec<u64> {
+        self.all::<L>()
+    }
+}
+
+impl SingleJob for EveryOperation<'_, f32> {
+    type Output = Vec<u64>;
+
+    #[inline(always)]
+    fn run<L: SingleLanes>(self) -> Vec<u64> {
+        let mut out = self.all::<L>();
+        let mut lanes = [0.0; 16];
+        L::same(self.a[1]).store(&mut lanes);
+        out.extend(lanes.map(bits_of));
+        out
     }
 }
 
@@ -65,15 +84,34 @@ fn assert_agrees(a: &[f64; 8], b: &[f64; 8], bits: u32) {
 fn every_backend_gives_the_same_bits() {
     let special =
         [0.0, -0.0, 1.0, -1.0, 0.5, -2.5, f64::MAX, f64::MIN_POSITIVE, 5e-324, 1e300, -1e-300, f64::INFINITY, f64::NAN];
+    let special_singles =
+        [0.0, -0.0, 1.0, -1.0, 0.5, -2.5, f32::MAX, f32::MIN_POSITIVE, 1e-45, 1e30, -1e-38, f32::INFINITY, f32::NAN];
     let mut stream = Stream::new(11);
     for _ in 0..20_000 {
-        let mut any = || match stream.unit() {
-            share if share < 0.4 => special[(stream.unit() * special.len() as f64) as usize],
-            share if share < 0.7 => stream.between(-10.0, 10.0),
-            _ => libm::exp2(stream.between(-500.0, 500.0)) * stream.between(-1.0, 1.0),
+        let mut any = || {
+            let place = (stream.unit() * special.len() as f64) as usize;
+            match stream.unit() {
+                share if share < 0.4 => (special[place], special_singles[place]),
+                share if share < 0.7 => [stream.between(-10.0, 10.0)].map(|number| (number, number as f32))[0],
+                _ => {
+                    let (exponent, factor) = (stream.between(-1.0, 1.0), stream.between(-1.0, 1.0));
+                    let (wide, single) = (libm::exp2(500.0 * exponent), libm::exp2(60.0 * exponent));
+                    (wide * factor, (single * factor) as f32)
+                }
+            }
         };
-        let (a, b) = ([(); 8].map(|()| any()), [(); 8].map(|()| any()));
-        assert_agrees(&a, &b, (stream.unit() * 256.0) as u32);
+        let (a, b) = ([(); 16].map(|()| any()), [(); 16].map(|()| any()));
+        let bits = (stream.unit() * 65536.0) as u32;
+        let (wide_a, wide_b) = (a.map(|(wide, _)| wide), b.map(|(wide, _)| wide));
+        let (single_a, single_b) = (a.map(|(_, single)| single), b.map(|(_, single)| single));
+        let wide = EveryOperation { a: &wide_a, b: &wide_b, bits };
+        let single = EveryOperation { a: &single_a, b: &single_b, bits };
+        let (of_wide, of_single) = (Backend::Scalar.run(wide), Backend::Scalar.run_single(single));
+        for backend in Backend::ALL.into_iter().filter(|backend| backend.is_available()) {
+            let name = backend.name();
+            assert_eq!(backend.run(wide), of_wide, "{name}: {wide_a:?} {wide_b:?} {bits:b}");
+            assert_eq!(backend.run_single(single), of_single, "{name}: {single_a:?} {single_b:?} {bits:b}");
+        }
     }
 }
 

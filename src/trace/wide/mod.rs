@@ -202,14 +202,7 @@ impl Wide {
 impl Scratch {
     /// Writes the pixels of the tile that was traced into an image `width` pixels wide, whose first row is `first_row`.
     pub fn write(&self, rect: &Rect, rgb: &mut [u8], width: usize, first_row: u32) {
-        let n_columns = rect.columns.len();
-        for (pixels, row) in self.pixels.chunks_exact(TILE_WIDTH).zip(rect.rows.clone()) {
-            let first = ((row - first_row) as usize * width + rect.columns.start as usize) * 3;
-            let to = &mut rgb[first..first + n_columns * 3];
-            for (to, pixel) in to.chunks_exact_mut(3).zip(pixels) {
-                to.copy_from_slice(&pixel.to_le_bytes()[..3]);
-            }
-        }
+        write_pixels(&self.pixels, rect, rgb, width, first_row);
     }
 
     /// Calls `settle` with the column and row of each pixel of the tile that is left to finer arithmetic.
@@ -224,6 +217,18 @@ impl Scratch {
                     settle(rect.columns.start + column, rect.rows.start + row);
                 }
             }
+        }
+    }
+}
+
+/// Writes the pixels of a tile, red + 2⁸·green + 2¹⁶·blue each, into an image.
+pub(super) fn write_pixels(pixels: &[u32], rect: &Rect, rgb: &mut [u8], width: usize, first_row: u32) {
+    let n_columns = rect.columns.len();
+    for (pixels, row) in pixels.chunks_exact(TILE_WIDTH).zip(rect.rows.clone()) {
+        let first = ((row - first_row) as usize * width + rect.columns.start as usize) * 3;
+        let to = &mut rgb[first..first + n_columns * 3];
+        for (to, pixel) in to.chunks_exact_mut(3).zip(pixels) {
+            to.copy_from_slice(&pixel.to_le_bytes()[..3]);
         }
     }
 }

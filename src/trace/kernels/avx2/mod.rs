@@ -2,10 +2,12 @@
 //!
 //! Features: avx2 and what it includes.
 
+mod single;
+
 use std::arch::x86_64::*;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-use crate::trace::kernels::{Job, Lanes, Mask};
+use crate::trace::kernels::{Job, Mask, Numbers, SingleJob};
 
 /// Tells whether the machine has the instructions.
 pub(super) fn is_available() -> bool {
@@ -16,6 +18,12 @@ pub(super) fn is_available() -> bool {
 #[target_feature(enable = "avx2")]
 pub(super) fn run<J: Job>(job: J) -> J::Output {
     job.run::<Lanes8>()
+}
+
+/// Carries out a job on binary32 lanes of this kind.
+#[target_feature(enable = "avx2")]
+pub(super) fn run_single<J: SingleJob>(job: J) -> J::Output {
+    job.run::<single::Lanes16>()
 }
 
 /// Eight numbers. Only [`run`] names this type to others, so that it exists only where the instructions do.
@@ -81,10 +89,12 @@ impl Neg for Lanes8 {
     }
 }
 
-impl Lanes for Lanes8 {
+impl Numbers for Lanes8 {
     const N: usize = 8;
 
     type Mask = Mask8;
+
+    type Element = f64;
 
     #[inline(always)]
     fn splat(number: f64) -> Self {

@@ -2,10 +2,12 @@
 //!
 //! Features: avx512f, avx512dq, avx512vl, avx512bw, and what they include.
 
+mod single;
+
 use std::arch::x86_64::*;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-use crate::trace::kernels::{Job, Lanes, Mask};
+use crate::trace::kernels::{Job, Mask, Numbers, SingleJob};
 
 /// Tells whether the machine has the instructions.
 pub(super) fn is_available() -> bool {
@@ -19,6 +21,12 @@ pub(super) fn is_available() -> bool {
 #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx512bw")]
 pub(super) fn run<J: Job>(job: J) -> J::Output {
     job.run::<Lanes8>()
+}
+
+/// Carries out a job on binary32 lanes of this kind.
+#[target_feature(enable = "avx512f,avx512dq,avx512vl,avx512bw")]
+pub(super) fn run_single<J: SingleJob>(job: J) -> J::Output {
+    job.run::<single::Lanes16>()
 }
 
 /// Eight numbers. Only [`run`] names this type to others, so that it exists only where the instructions do.
@@ -79,10 +87,12 @@ impl Neg for Lanes8 {
     }
 }
 
-impl Lanes for Lanes8 {
+impl Numbers for Lanes8 {
     const N: usize = 8;
 
     type Mask = Mask8;
+
+    type Element = f64;
 
     #[inline(always)]
     fn splat(number: f64) -> Self {

@@ -1,8 +1,10 @@
 //! Lanes of plain numbers: the specification of the other backends.
 
+pub(super) mod single;
+
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-use crate::trace::kernels::{Lanes, Mask};
+use crate::trace::kernels::{Mask, Numbers};
 
 /// Eight numbers.
 #[derive(Clone, Copy, Debug)]
@@ -84,10 +86,12 @@ impl Neg for Lanes8 {
     }
 }
 
-impl Lanes for Lanes8 {
+impl Numbers for Lanes8 {
     const N: usize = 8;
 
     type Mask = Mask8;
+
+    type Element = f64;
 
     #[inline(always)]
     fn splat(number: f64) -> Self {

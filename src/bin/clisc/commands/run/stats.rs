@@ -153,12 +153,14 @@ impl SceneStats {
         for (what, time) in times {
             let _ = writeln!(table, "  {what:<15} {:>14.6} s", time.as_secs_f64());
         }
-        let Counts { eye_rays, reflected_rays, shadow_rays, tests, settled_pixels, refined_pixels, ties } = self.counts;
+        let Counts { eye_rays, reflected_rays, shadow_rays, tests, draft_pixels, settled_pixels, refined_pixels, ties } =
+            self.counts;
         let counts = [
             ("eye rays", eye_rays),
             ("reflected rays", reflected_rays),
             ("shadow rays", shadow_rays),
             ("tests", tests),
+            ("draft pixels", draft_pixels),
             ("settled pixels", settled_pixels),
             ("refined pixels", refined_pixels),
             ("ties", ties),

@@ -1,0 +1,134 @@
+//! How wrong a draft is: binary32 against the right pixels, on every backend.
+
+use clisc::ir::{self, Registers, SceneView};
+use clisc::plan::{Part, Precision, Settings, Size, plan};
+use clisc::source::Source;
+use clisc::trace::kernels::Backend;
+use clisc::trace::{Counts, Tracer};
+
+/// The side of the images.
+const SIDE: u32 = 300;
+
+/// A channel is smooth if the right image nowhere around it, within this many pixels, differs by more than
+/// [`SMOOTH_STEP`]: there is no silhouette and no edge of a shadow.
+const REACH: i64 = 2;
+const SMOOTH_STEP: u8 = 12;
+
+fn settings(precision: Precision) -> Settings {
+    Settings { size: Size::new(SIDE, SIDE).expect("a size within the limits"), precision, ..Settings::default() }
+}
+
+fn render(view: SceneView<'_>, settings: &Settings, backend: Backend) -> (Vec<u8>, Counts) {
+    let (width, height) = (settings.size.width(), settings.size.height());
+    let mut rgb = vec![0; width as usize * height as usize * 3];
+    let counts = Tracer::with_backend(plan(view, settings), Some(backend)).render_rows(0..height, &mut rgb);
+    (rgb, counts)
+}
+
+/// Calls `visit` with the title and the last view of every scene in `scenes/` that has no errors.
+fn for_every_scene(mut visit: impl FnMut(&str, SceneView<'_>)) {
+    for folder in ["first-steps", "commands", "shading", "mirrors", "gallery"] {
+        let folder = format!("{}/scenes/{folder}", env!("CARGO_MANIFEST_DIR"));
+        let mut paths: Vec<_> =
+            std::fs::read_dir(&folder).expect("a folder").map(|entry| entry.expect("an entry").path()).collect();
+        paths.sort();
+        for path in paths {
+            let text = std::fs::read_to_string(&path).expect("a readable scene");
+            with_last_view(&text, |view| visit(&path.display().to_string(), view));
+        }
+    }
+}
+
+fn with_last_view(text: &str, visit: impl FnOnce(SceneView<'_>)) {
+    let source = Source::from_bytes("scene.cli", text.as_bytes().to_vec()).expect("a short text");
+    let program = ir::validate(clisc::compile(&source).program).expect("sound");
+    let mut registers = Registers::default();
+    program.commands.iter().for_each(|command| registers.step(command));
+    visit(SceneView::new(&program, registers));
+}
+
+/// How a draft differs from the right image.
+#[derive(Debug, Default)]
+struct Errors {
+    wrong_channels: usize,
+    /// Those that are off by more than one level.
+    far_channels: usize,
+    /// The most levels that a smooth channel is off, and how many are off by more than one.
+    max_smooth: u8,
+    far_smooth_channels: usize,
+}
+
+fn compare(draft: &[u8], right: &[u8]) -> Errors {
+    let mut errors = Errors::default();
+    for (i, (a, b)) in draft.iter().zip(right).enumerate().filter(|(_, (a, b))| a != b) {
+        let off = a.abs_diff(*b);
+        errors.wrong_channels += 1;
+        errors.far_channels += usize::from(off > 1);
+        if is_smooth(right, i) {
+            errors.max_smooth = errors.max_smooth.max(off);
+            errors.far_smooth_channels += usize::from(off > 1);
+        }
+    }
+    errors
+}
+
+/// Tells whether a channel of the image is like those around it.
+fn is_smooth(image: &[u8], place: usize) -> bool {
+    let side = i64::from(SIDE);
+    let (pixel, channel) = (place as i64 / 3, place as i64 % 3);
+    let (column, row) = (pixel % side, pixel / side);
+    let inside = 0..side;
+    (-REACH..=REACH).flat_map(|y| (-REACH..=REACH).map(move |x| (column + x, row + y))).all(|(x, y)| {
+        !(inside.contains(&x) && inside.contains(&y))
+            || image[((y * side + x) * 3 + channel) as usize].abs_diff(image[place]) <= SMOOTH_STEP
+    })
+}
+
+#[test]
+fn drafts_are_nearly_right() {
+    for_every_scene(|title, view| {
+        let (right, _) = render(view, &settings(Precision::F64), Backend::best());
+        let (draft, counts) = render(view, &settings(Precision::F32), Backend::best());
+        let errors = compare(&draft, &right);
+        println!("{title}: {} drafted, {errors:?}", counts.draft_pixels);
+    });
+}
+
+#[test]
+fn drafts_are_the_same_on_every_backend() {
+    for_every_scene(|title, view| {
+        let (expected, _) = render(view, &settings(Precision::F32), Backend::Scalar);
+        for backend in Backend::ALL.into_iter().filter(|backend| backend.is_available()) {
+            let (draft, _) = render(view, &settings(Precision::F32), backend);
+            assert!(draft == expected, "{title}, {}", backend.name());
+        }
+    });
+}
+
+#[test]
+fn what_binary32_cannot_start_from_is_not_drafted() {
+    let room = "surface .1 .2 .3 .4 .5 .6 0 0 0 1 0\nlight 1 1 1 0 3 0\n";
+    let inside = format!("{room}sphere 0 0 -1 5\nsphere 0 0 -3 1\n");
+    let near = format!("{room}sphere 0 0 -3 1\n");
+    let far = format!("{room}sphere 0 0 -3 1\nsphere 0 0 -1e30 1e29\n");
+    let samples = Settings { samples: 2, ..settings(Precision::F32) };
+    let part_a = Settings { part: Part::A, ..settings(Precision::F32) };
+    let cases = [
+        (&near, settings(Precision::F32), true),
+        (&near, part_a, true),
+        (&near, settings(Precision::F64), false),
+        (&near, samples, false),
+        (&inside, settings(Precision::F32), false),
+        (&far, settings(Precision::F32), false),
+    ];
+    for (text, settings, is_drafted) in cases {
+        with_last_view(text, |view| {
+            let (image, counts) = render(view, &settings, Backend::best());
+            assert_eq!(counts.draft_pixels, if is_drafted { u64::from(SIDE * SIDE) } else { 0 }, "{text}{settings:?}");
+            if !is_drafted {
+                let right = render(view, &Settings { precision: Precision::F64, ..settings }, Backend::best()).0;
+                assert!(image == right, "{text}");
+            }
+        });
+    }
+}
