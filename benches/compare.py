@@ -95,7 +95,7 @@ def measure(group, case, contenders, folder, args):
         "name": case.name,
         "n_objects": case.n_objects,
         "n_pixels": case.side**2,
-        "commit": commit(),
+        "commit": args.commit or commit(),
         "date": time.strftime("%Y-%m-%d"),
         "machine": machine(),
         "programs": {program.name: results[program.name].summary() | {"command": program.shown} for program in contenders},
@@ -153,9 +153,11 @@ def arguments():
     folder = {"type": Path, "metavar": "FOLDER"}
     parser.add_argument("--groups", nargs="*", choices=GROUPS, default=list(GROUPS), help="what to measure")
     parser.add_argument("--clisc", type=Path, default=ROOT / "target/release/clisc", help="our binary")
+    parser.add_argument("--commit", metavar="NAME", help="the commit of our binary; else that of this tree")
     parser.add_argument("--originals", help="the scenes i1.cli to i10.cli", **folder)
     parser.add_argument("--peers", help="the programs embree and brute", **folder)
     parser.add_argument("--converters", help="cli2tachyon.py and cli2pov.py", **folder)
+    parser.add_argument("--without", nargs="*", default=[], metavar="NAME", help="programs to leave out, say POV-Ray")
     parser.add_argument("--work", help="scenes and images go here, and clouds are kept; else a temporary one", **folder)
     parser.add_argument("-n", "--rounds", type=int, default=9)
     parser.add_argument("--budget", type=float, default=30, help="seconds for all rounds of one program in one case")
@@ -176,11 +178,11 @@ def main():
                 sys.exit(f"the group `{group}` needs --originals")
             measured = []
             for case in cases_of(group, args.originals, folder):
-                of_case = [program for program in contenders if takes_part(program, group, case)]
+                of_case = [p for p in contenders if p.name not in args.without and takes_part(p, group, case)]
                 measured.append(measure(group, case, of_case, folder, args))
                 shown = {name: f"{result['seconds'] * 1000:.1f}" for name, result in measured[-1]["programs"].items()}
                 print(f"{group}, {case.name}: ms {shown}", flush=True)
-            (DATA / f"{group}.json").write_text(json.dumps(measured, indent=1) + "\n")
+                (DATA / f"{group}.json").write_text(json.dumps(measured, indent=1) + "\n")
     write_page()
 
 
