@@ -102,8 +102,10 @@ fn worst_shares(program: &Valid, settings: &Settings) -> Option<[f64; 2]> {
     let mut scratch = wide.scratch();
     let mut worst = [0.0_f64; 2];
     for rect in Wide::tiles(&plan, 0..settings.size.height()) {
-        let (scratch, sample) = (&mut scratch, [0; 2]);
-        let job = TileJob { wide: &wide, plan: &plan, sampling: &sampling, rect: &rect, scratch, sample };
+        let (bounds, scratch, sample) = (&wide.bounds, &mut scratch, [0; 2]);
+        let among = plan.tiles.candidates(rect.columns.start, rect.rows.start);
+        let job =
+            TileJob { wide: &wide, bounds, among, plan: &plan, sampling: &sampling, rect: &rect, scratch, sample };
         for found in Backend::Scalar.run(Probe(job)) {
             let (column, row) = ((found.pixel % TILE_WIDTH) as u32, (found.pixel / TILE_WIDTH) as u32);
             if column >= rect.columns.len() as u32 {
