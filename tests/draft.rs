@@ -84,14 +84,28 @@ fn is_smooth(image: &[u8], place: usize) -> bool {
     })
 }
 
+/// The bounds on what is wrong in any scene, of 270,000 channels: measured were at most 69, 6, 3 levels and 2.
+const MAX_WRONG: usize = 135;
+const MAX_FAR: usize = 12;
+const MAX_SMOOTH: u8 = 4;
+const MAX_FAR_SMOOTH: usize = 4;
+
 #[test]
 fn drafts_are_nearly_right() {
+    let mut failures = Vec::new();
     for_every_scene(|title, view| {
         let (right, _) = render(view, &settings(Precision::F64), Backend::best());
         let (draft, counts) = render(view, &settings(Precision::F32), Backend::best());
         let errors = compare(&draft, &right);
-        println!("{title}: {} drafted, {errors:?}", counts.draft_pixels);
+        let is_good = errors.wrong_channels <= MAX_WRONG
+            && errors.far_channels <= MAX_FAR
+            && errors.max_smooth <= MAX_SMOOTH
+            && errors.far_smooth_channels <= MAX_FAR_SMOOTH;
+        if !is_good {
+            failures.push(format!("{title}: {} drafted, {errors:?}", counts.draft_pixels));
+        }
     });
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
 
 #[test]

@@ -162,11 +162,15 @@ pub(super) fn meet_cylinder<L: SingleLanes>(
     let b = mx * lines.dir[0] + mz * lines.dir[2];
     let root = discriminant.max(L::same(0.0)).sqrt();
     let (enter, leave) = ((b - root) * lines.inv_a, (b + root) * lines.inv_a);
-    let to_lower = (L::same(cylinder.y_min) - from[1]) * lines.inv_dy;
-    let to_upper = (L::same(cylinder.y_max) - from[1]) * lines.inv_dy;
-    let (first, last) = (to_lower.min(to_upper), to_lower.max(to_upper));
-    let hit = maybe & enter.max(first).le(leave.min(last));
     let zero = L::same(0.0);
+    let (lower, upper) = (L::same(cylinder.y_min) - from[1], L::same(cylinder.y_max) - from[1]);
+    let (to_lower, to_upper) = (lower * lines.inv_dy, upper * lines.inv_dy);
+    // A level line at the height of a cap touches the rim, which counts as a hit; 0/0 would not.
+    let is_level = lines.dir[1].eq(zero) & lower.le(zero) & upper.ge(zero);
+    let endless = L::same(f32::INFINITY);
+    let first = L::select(is_level, -endless, to_lower.min(to_upper));
+    let last = L::select(is_level, endless, to_lower.max(to_upper));
+    let hit = maybe & enter.max(first).le(leave.min(last));
     let face = L::same(cylinder.face);
     let by_wall = hit & enter.ge(first) & enter.gt(zero);
     if by_wall.any() {
