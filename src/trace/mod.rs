@@ -1,10 +1,10 @@
 //! The ray tracer: a [`Plan`] in, rows of pixels out, each the pixel that exact arithmetic gives.
 //!
 //! Most pixels are traced by `wide`, many at once in plain binary64, where everything is decided beyond bounds that are
-//! known beforehand. Every other pixel is traced in binary64 with a running bound on every number ([`Ball64`]). If each comparison on its way and the
-//! rounding of its channels are decided by the bounds, it is proved. If not, it is traced again in double-double
-//! ([`Ball106`]); what that cannot decide either is a tie, counted and drawn as equality asks. The code is the same for
-//! both, generic over [`Real`].
+//! known beforehand. Every other pixel is traced in binary64 with a running bound on every number ([`Ball64`]). If each
+//! comparison on its way and the rounding of its channels are decided by the bounds, it is proved. If not, it is traced
+//! again in double-double ([`Ball106`]); what that cannot decide either is a tie, counted and drawn as equality asks. The
+//! code is the same for both, generic over [`Real`].
 //!
 //! Reading order: [`Tracer::render_rows`], `pixel`, `integrator`, `intersect`, `shade`. `reject` keeps most
 //! primitives away from them.
