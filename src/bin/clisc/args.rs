@@ -131,8 +131,8 @@ pub struct ImageArgs {
     #[arg(long, value_name = "N", default_value_t = 8, value_parser = value_parser!(u32).range(..=i64::from(Settings::MAX_LEVEL)))]
     pub max_level: u32,
     /// The arithmetic: f64 gives the right pixels; f32 is a faster draft, not exact: of 270,000 channels of a 300x300 scene
-    /// measured, at most 69 were wrong, mostly by one level. --stats counts the pixels that were drafted; several samples, more than 512 objects or the eye inside
-    /// an object make it f64.
+    /// measured, at most 69 were wrong, mostly by one level. --stats counts the pixels that were drafted; several samples,
+    /// more than 512 objects or the eye inside an object make it f64.
     #[arg(long, value_enum, default_value_t, hide_possible_values = true, ignore_case = true)]
     pub precision: Precision,
     /// Do all the work that clisc can prove needless, or that of the passes named, separated by commas; for comparison,
