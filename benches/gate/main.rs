@@ -1,7 +1,7 @@
 //! Has a hot path become slower? Counts the instructions of each case under callgrind and holds them against the limits
 //! in `benches/gate.json`.
 //!
-//! A count does not feel what else the machine does, so a gate that CI runs can be narrow where a timed one could not.
+//! A count does not feel what else the machine does, so a gate can be narrow where a timed one could not.
 //! What it depends on is written down or fixed: the compiler and the release profile (the limits name the compiler they
 //! are from); the vector instructions (valgrind shows every program the same processor with AVX2 and without AVX-512, so
 //! the AVX2 paths are counted, everywhere); the threads (each case runs on one). [`MARGIN`] is for what remains, such as
