@@ -1,116 +1,8 @@
-//! What the command line says.
-
-use std::path::PathBuf;
+//! What an image is asked for: the options shared by the commands that plan or trace one.
 
 use clap::builder::PossibleValue;
-use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
+use clap::{Args, ValueEnum, value_parser};
 use clisc::plan::{self, Pass, Passes, Settings, Size};
-
-/// Compiles and renders `.cli` scenes.
-#[derive(Debug, Parser)]
-#[command(version, arg_required_else_help = true, after_help = CLI_EXAMPLES)]
-pub struct Cli {
-    /// What to do.
-    #[command(subcommand)]
-    pub command: Command,
-}
-
-const CLI_EXAMPLES: &str = "\
-Examples:
-  clisc check scenes               say what is wrong with the scenes below a folder
-  clisc run i1.cli                 render i1.cli and save its images here
-  clisc ir i1.cli --emit commands  show what i1.cli was compiled to
-  clisc explain E0203              explain a code that a message showed
-
-Exit codes: 0 fine, 1 a scene has errors, 2 wrong usage or a fault outside the scene, 130 interrupted.";
-
-/// What to do.
-#[derive(Debug, Subcommand)]
-pub enum Command {
-    /// Checks scenes and says what is wrong with them.
-    Check(CheckArgs),
-    /// Renders scenes and saves their images.
-    Run(RunArgs),
-    /// Shows what a scene becomes at a stage of the compiler.
-    Ir(IrArgs),
-    /// Explains a code, with a failing scene and its repair.
-    Explain(ExplainArgs),
-}
-
-/// Arguments of `clisc check`.
-#[derive(Args, Debug)]
-#[command(after_help = CHECK_EXAMPLES)]
-pub struct CheckArgs {
-    /// Scenes; a folder means every .cli file below it, - is standard input.
-    #[arg(value_name = "PATH", required = true)]
-    pub paths: Vec<PathBuf>,
-    /// How to show what was found.
-    #[arg(long, value_enum, default_value_t)]
-    pub format: CheckFormat,
-    /// Take warnings for errors.
-    #[arg(long)]
-    pub deny_warnings: bool,
-}
-
-const CHECK_EXAMPLES: &str = "\
-Examples:
-  clisc check two.cli                  every mistake with its place and its repair
-  clisc check scenes --format short    one line each: path:line:column
-  clisc check - --format json < a.cli  for other programs
-  clisc check scenes --deny-warnings   a gate: exit code 1 when there is anything to say";
-
-/// How `clisc check` shows what it found.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub enum CheckFormat {
-    /// The lines of the scene with the mistakes marked.
-    #[default]
-    Human,
-    /// One line each.
-    Short,
-    /// One JSON document.
-    Json,
-}
-
-/// Arguments of `clisc run`.
-#[derive(Args, Debug)]
-#[command(after_help = RUN_EXAMPLES)]
-pub struct RunArgs {
-    /// Scenes; - is standard input.
-    #[arg(value_name = "SCENE", required = true)]
-    pub scenes: Vec<PathBuf>,
-    /// The folder below which images are saved; made when missing.
-    #[arg(short, long, value_name = "DIR", default_value = ".")]
-    pub out_dir: PathBuf,
-    /// What the images are.
-    #[command(flatten)]
-    pub image: ImageArgs,
-    /// Threads to render with, at most 1024; 0 means one a core.
-    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true, value_parser = value_parser!(u16).range(..=MAX_THREADS))]
-    pub threads: u16,
-    /// Print times and counts; --stats=json prints one JSON document in place of the other results.
-    #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, require_equals = true, default_missing_value = "table")]
-    pub stats: Option<StatsFormat>,
-    /// Print nothing but errors, and the --stats asked for.
-    #[arg(short, long)]
-    pub quiet: bool,
-    /// Check everything, render and save nothing.
-    #[arg(long)]
-    pub dry_run: bool,
-}
-
-/// The most threads to render with: more only cost, and a hundred thousand would not even start.
-const MAX_THREADS: i64 = 1024;
-
-const RUN_EXAMPLES: &str = "\
-Examples:
-  clisc run i1.cli                               300x300, saved in this folder
-  clisc run scenes/*.cli -o out --size 1920x1080
-  clisc run i1.cli --samples 4 --sample-at centre
-  clisc run i1.cli --stats=json --quiet          times and counts for other programs
-  clisc run i1.cli --no-skip=shadows,tiles       the same image without two of the shortcuts
-  clisc run - < i1.cli                           the scene from standard input
-
-A scene can write only below the folder of --out-dir. An image is saved whole or not at all.";
 
 /// What an image is asked for.
 #[derive(Args, Debug)]
@@ -246,80 +138,6 @@ impl From<SampleAt> for plan::SampleAt {
     }
 }
 
-/// How `clisc run` shows times and counts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum StatsFormat {
-    /// A table for people.
-    Table,
-    /// One JSON document.
-    Json,
-}
-
-/// Arguments of `clisc ir`.
-#[derive(Args, Debug)]
-#[command(after_help = IR_EXAMPLES)]
-pub struct IrArgs {
-    /// The scene; - is standard input.
-    #[arg(value_name = "SCENE")]
-    pub scene: PathBuf,
-    /// The stage to show.
-    #[arg(long, value_enum, default_value_t)]
-    pub emit: Emit,
-    /// How to show it.
-    #[arg(long, value_enum, default_value_t)]
-    pub format: DumpFormat,
-    /// The images that `--emit plan` is about.
-    #[command(flatten, next_help_heading = "Options of --emit plan")]
-    pub image: ImageArgs,
-}
-
-const IR_EXAMPLES: &str = "\
-Examples:
-  clisc ir i1.cli                             the command list, to be read like assembler
-  clisc ir i1.cli --emit tokens
-  clisc ir i1.cli --emit plan --size 640x480  what each image needs of the scene, and what is skipped
-  clisc ir i1.cli --emit ir --format json | jq";
-
-/// A stage of the compiler.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub enum Emit {
-    /// The tokens, comments and line ends among them.
-    Tokens,
-    /// The syntax tree.
-    Ast,
-    /// Lights, surfaces and primitives.
-    Ir,
-    /// The command list of the executor.
-    #[default]
-    Commands,
-    /// What each image needs of the scene, and what is skipped.
-    Plan,
-}
-
-/// How `clisc ir` shows a stage.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub enum DumpFormat {
-    /// For people.
-    #[default]
-    Text,
-    /// For other programs.
-    Json,
-}
-
-/// Arguments of `clisc explain`.
-#[derive(Args, Debug)]
-#[command(after_help = EXPLAIN_EXAMPLES)]
-pub struct ExplainArgs {
-    /// The code, such as E0203; without it every code is listed.
-    #[arg(value_name = "CODE")]
-    pub code: Option<String>,
-}
-
-const EXPLAIN_EXAMPLES: &str = "\
-Examples:
-  clisc explain        every code with its title
-  clisc explain E0203  what it means, a scene that has it, and its repair";
-
 /// Parses `WxH`; a fault explains itself.
 fn parse_size(text: &str) -> Result<Size, String> {
     let (width, height) = text
@@ -343,11 +161,6 @@ fn parse_side(name: &str, digits: &str) -> Result<u32, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_definition_is_sound() {
-        <Cli as clap::CommandFactory>::command().debug_assert();
-    }
 
     #[test]
     fn a_size_parses_or_explains_itself() {

@@ -1,0 +1,39 @@
+//! Arguments of `clisc check`.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+/// Arguments of `clisc check`.
+#[derive(Args, Debug)]
+#[command(after_help = CHECK_EXAMPLES)]
+pub struct CheckArgs {
+    /// Scenes; a folder means every .cli file below it, - is standard input.
+    #[arg(value_name = "PATH", required = true)]
+    pub paths: Vec<PathBuf>,
+    /// How to show what was found.
+    #[arg(long, value_enum, default_value_t)]
+    pub format: CheckFormat,
+    /// Take warnings for errors.
+    #[arg(long)]
+    pub deny_warnings: bool,
+}
+
+const CHECK_EXAMPLES: &str = "\
+Examples:
+  clisc check two.cli                  every mistake with its place and its repair
+  clisc check scenes --format short    one line each: path:line:column
+  clisc check - --format json < a.cli  for other programs
+  clisc check scenes --deny-warnings   a gate: exit code 1 when there is anything to say";
+
+/// How `clisc check` shows what it found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum CheckFormat {
+    /// The lines of the scene with the mistakes marked.
+    #[default]
+    Human,
+    /// One line each.
+    Short,
+    /// One JSON document.
+    Json,
+}

@@ -1,0 +1,56 @@
+//! What the command line says: a file for each command, `image` for what several of them ask of an image.
+
+mod check;
+mod explain;
+mod image;
+mod ir;
+mod run;
+
+use clap::{Parser, Subcommand};
+
+pub use check::{CheckArgs, CheckFormat};
+pub use explain::ExplainArgs;
+pub use image::ImageArgs;
+pub use ir::{DumpFormat, Emit, IrArgs};
+pub use run::{RunArgs, StatsFormat};
+
+/// Compiles and renders `.cli` scenes.
+#[derive(Debug, Parser)]
+#[command(version, arg_required_else_help = true, after_help = CLI_EXAMPLES)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+const CLI_EXAMPLES: &str = "\
+Examples:
+  clisc check scenes               say what is wrong with the scenes below a folder
+  clisc run i1.cli                 render i1.cli and save its images here
+  clisc ir i1.cli --emit commands  show what i1.cli was compiled to
+  clisc explain E0203              explain a code that a message showed
+
+Exit codes: 0 fine, 1 a scene has errors, 2 wrong usage or a fault outside the scene, 130 interrupted.";
+
+/// What to do.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Checks scenes and says what is wrong with them.
+    Check(CheckArgs),
+    /// Renders scenes and saves their images.
+    Run(RunArgs),
+    /// Shows what a scene becomes at a stage of the compiler.
+    Ir(IrArgs),
+    /// Explains a code, with a failing scene and its repair.
+    Explain(ExplainArgs),
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_definition_is_sound() {
+        <Cli as clap::CommandFactory>::command().debug_assert();
+    }
+}

@@ -1,0 +1,57 @@
+//! Arguments of `clisc run`.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum, value_parser};
+
+use super::image::ImageArgs;
+
+/// Arguments of `clisc run`.
+#[derive(Args, Debug)]
+#[command(after_help = RUN_EXAMPLES)]
+pub struct RunArgs {
+    /// Scenes; - is standard input.
+    #[arg(value_name = "SCENE", required = true)]
+    pub scenes: Vec<PathBuf>,
+    /// The folder below which images are saved; made when missing.
+    #[arg(short, long, value_name = "DIR", default_value = ".")]
+    pub out_dir: PathBuf,
+    /// What the images are.
+    #[command(flatten)]
+    pub image: ImageArgs,
+    /// Threads to render with, at most 1024; 0 means one a core.
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true, value_parser = value_parser!(u16).range(..=MAX_THREADS))]
+    pub threads: u16,
+    /// Print times and counts; --stats=json prints one JSON document in place of the other results.
+    #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, require_equals = true, default_missing_value = "table")]
+    pub stats: Option<StatsFormat>,
+    /// Print nothing but errors, and the --stats asked for.
+    #[arg(short, long)]
+    pub quiet: bool,
+    /// Check everything, render and save nothing.
+    #[arg(long)]
+    pub dry_run: bool,
+}
+
+/// The most threads to render with: more only cost, and a hundred thousand would not even start.
+const MAX_THREADS: i64 = 1024;
+
+const RUN_EXAMPLES: &str = "\
+Examples:
+  clisc run i1.cli                               300x300, saved in this folder
+  clisc run scenes/*.cli -o out --size 1920x1080
+  clisc run i1.cli --samples 4 --sample-at centre
+  clisc run i1.cli --stats=json --quiet          times and counts for other programs
+  clisc run i1.cli --no-skip=shadows,tiles       the same image without two of the shortcuts
+  clisc run - < i1.cli                           the scene from standard input
+
+A scene can write only below the folder of --out-dir. An image is saved whole or not at all.";
+
+/// How `clisc run` shows times and counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum StatsFormat {
+    /// A table for people.
+    Table,
+    /// One JSON document.
+    Json,
+}
