@@ -113,6 +113,9 @@ impl Mag {
         if self.is_zero() || other.is_infinite() {
             return Self::ZERO;
         }
+        if other.is_zero() {
+            return self;
+        }
         let exponent = self.exponent.max(other.exponent);
         let difference = self.in_units_of(exponent) * Self::DOWN - other.in_units_of(exponent) * Self::UP;
         if difference > 1e-300 { Self::new(difference * Self::DOWN, exponent) } else { Self::ZERO }

@@ -26,6 +26,7 @@ use clisc::ir::SceneView;
 use clisc::plan::Settings;
 use rayon::prelude::*;
 
+#[allow(unused_imports, reason = "each suite uses a part")]
 pub use self::tie::{Tie, Ties};
 
 use self::run::Run;

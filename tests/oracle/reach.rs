@@ -1,5 +1,7 @@
 //! The only binary64 of the oracle: leaving out primitives that a ray misses by a wide margin.
 
+use std::ops::RangeInclusive;
+
 use super::vec3::Vec3;
 
 /// What a primitive is for the binary64 filter: a sphere, or an endless upright cylinder.
@@ -14,6 +16,9 @@ impl Reach {
     /// A margin for quantities of about 1 to 1000 that are good to 1e-9: far wider than their error.
     const MARGIN: f64 = 1e-5;
 
+    /// The units within which a number keeps its relative precision, whatever it is divided by.
+    const UNITS: RangeInclusive<f64> = 1e-250..=1e250;
+
     /// Tells whether the ray misses by a wide margin, or meets only far behind `t_max`.
     ///
     /// Lengths are taken in units of the largest one at hand and the direction in units of its largest component, so
@@ -22,6 +27,9 @@ impl Reach {
         let largest = |v: [f64; 3]| v.into_iter().fold(0.0, |a: f64, b| a.max(b.abs()));
         let length_unit = largest(ray.origin).max(largest(self.center)).max(self.radius);
         let dir_unit = largest(ray.dir);
+        if !Self::UNITS.contains(&length_unit) || !Self::UNITS.contains(&dir_unit) {
+            return false;
+        }
         let [mut a, mut b, mut c] = [0.0; 3];
         for &axis in self.axes {
             let from_center = ray.origin[axis] / length_unit - self.center[axis] / length_unit;
