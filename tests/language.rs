@@ -10,7 +10,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use clisc::diag::render::{Color, render_human, render_json, render_short};
-use clisc::diag::{Severity, codes};
+use clisc::diag::{Diagnostic, Severity, codes, fix};
 use clisc::source::Source;
 use clisc::syntax::spec::COMMANDS;
 use clisc::syntax::{dump_ast, dump_ast_json, dump_tokens, dump_tokens_json, lex, parse};
@@ -108,6 +108,32 @@ fn each_page_of_explain_has_a_scene_that_fails_and_its_repair() {
         assert_eq!(check(failing), expected, "the failing scene of {}", code.id);
         assert_eq!(check(repaired), [""; 0], "the repaired scene of {}", code.id);
     }
+}
+
+#[test]
+fn each_fix_mends_what_it_is_offered_for() {
+    let mut n_fixes = 0;
+    for path in
+        scenes_below(&root().join("tests/fixtures")).into_iter().chain(scenes_below(&root().join("scenes/invalid")))
+    {
+        let source = read(&path);
+        let found = compile(&source).diagnostics;
+        for diagnostic in &found {
+            for offered in &diagnostic.fixes {
+                let fixed = fix::apply(source.text(), [offered]);
+                assert_eq!(fixed.is_applied, [true]);
+                let left = compile(&Source::new("fixed.cli", fixed.text.as_str())).diagnostics;
+                let n_like_it =
+                    |found: &[Diagnostic]| found.iter().filter(|other| other.code == diagnostic.code).count();
+                let n_errors = |found: &[Diagnostic]| found.iter().filter(|other| other.is_error()).count();
+                let is_mended = n_like_it(&left) < n_like_it(&found) && n_errors(&left) <= n_errors(&found);
+                let (id, title) = (diagnostic.code.id, &offered.title);
+                assert!(is_mended, "{}: {id}, {title} leads to\n{}", path.display(), fixed.text);
+                n_fixes += 1;
+            }
+        }
+    }
+    assert!(n_fixes > 50, "{n_fixes} fixes");
 }
 
 #[test]

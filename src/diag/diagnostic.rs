@@ -1,6 +1,6 @@
 //! One finding, independent of how it is shown.
 
-use crate::diag::{Code, Severity};
+use crate::diag::{Code, Fix, Severity};
 use crate::source::Span;
 
 /// A place with a few words on it.
@@ -30,6 +30,8 @@ pub struct Diagnostic {
     pub help: Option<String>,
     /// The rule behind it.
     pub note: Option<String>,
+    /// Ways to mend it, the likeliest first; only one of them is wanted.
+    pub fixes: Vec<Fix>,
 }
 
 impl Diagnostic {
@@ -37,7 +39,15 @@ impl Diagnostic {
     #[must_use]
     pub fn new(code: &'static Code, span: Span, message: impl Into<String>) -> Self {
         let primary = Label { span, message: String::new() };
-        Self { code, message: message.into(), primary, secondary: Vec::new(), help: None, note: None }
+        Self {
+            code,
+            message: message.into(),
+            primary,
+            secondary: Vec::new(),
+            help: None,
+            note: None,
+            fixes: Vec::new(),
+        }
     }
 
     /// Says what the primary place is.
@@ -65,6 +75,13 @@ impl Diagnostic {
     #[must_use]
     pub fn note(mut self, note: impl Into<String>) -> Self {
         self.note = Some(note.into());
+        self
+    }
+
+    /// Adds a way to mend it.
+    #[must_use]
+    pub fn fix(mut self, fix: impl Into<Option<Fix>>) -> Self {
+        self.fixes.extend(fix.into());
         self
     }
 

@@ -7,8 +7,10 @@
 
 pub mod codes;
 mod diagnostic;
+pub mod fix;
 pub mod render;
 pub mod words;
 
 pub use codes::{Code, Severity};
 pub use diagnostic::{Diagnostic, Label};
+pub use fix::{Edit, Fix, Safety};

@@ -5,7 +5,7 @@
 
 use std::path::PathBuf;
 
-use crate::diag::{Diagnostic, codes};
+use crate::diag::{Diagnostic, Fix, Safety, codes};
 use crate::ir::{Command, Program};
 
 /// Why a scene may not write to a name.
@@ -42,27 +42,28 @@ impl Refusal {
     pub fn diagnostic(&self, program: &Program, command_idx: usize) -> Diagnostic {
         let Command::Write(name) = &program.commands[command_idx] else { panic!("only a `write` has a name") };
         const STAY_BELOW: &str = "name a file in the output folder or below it";
-        let (code, label, help) = match self {
+        let place = program.origins.command(command_idx);
+        let (code, label, help, fix) = match self {
             Self::Absolute => {
                 let below = below_root(name);
                 let offer = refuse_name(below).is_none() && !below.is_empty();
-                let help = match offer {
-                    true if below.contains([' ', '\t']) => format!("write `\"{below}\"`"),
-                    true => format!("write `{below}`"),
-                    false => STAY_BELOW.to_owned(),
-                };
-                (&codes::ABSOLUTE_NAME, "starts outside the output folder", help)
+                let repair = if below.contains([' ', '\t']) { format!("\"{below}\"") } else { below.to_owned() };
+                let help = if offer { format!("write `{repair}`") } else { STAY_BELOW.to_owned() };
+                let fix = offer.then(|| Fix::write(Safety::Unsafe, place, repair));
+                (&codes::ABSOLUTE_NAME, "starts outside the output folder", help, fix)
             }
-            Self::Climbs => (&codes::PARENT_FOLDER, "leaves its folder", STAY_BELOW.to_owned()),
+            Self::Climbs => (&codes::PARENT_FOLDER, "leaves its folder", STAY_BELOW.to_owned(), None),
             Self::LinkLeadsOut { .. } => (
                 &codes::LINK_LEADS_OUT,
                 "passes a link",
                 "remove the link, or choose the folder it leads to with `--out-dir`".to_owned(),
+                None,
             ),
         };
-        Diagnostic::new(code, program.origins.command(command_idx), format!("the file name `{name}` {self}"))
+        Diagnostic::new(code, place, format!("the file name `{name}` {self}"))
             .label(label)
             .help(help)
+            .fix(fix)
             .note("a scene writes only below the folder of `--out-dir`")
     }
 }

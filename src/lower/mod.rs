@@ -79,8 +79,8 @@ impl<'s> Lowering<'s> {
     #[must_use]
     pub fn finish(mut self) -> Lowered {
         lights::check(&self.lights, &mut self.diagnostics);
-        objects::check(&self.objects, &mut self.diagnostics);
-        writes::check(&self.writes, &mut self.diagnostics);
+        objects::check(self.source, &self.objects, &mut self.diagnostics);
+        writes::check(self.source, &self.writes, &mut self.diagnostics);
         self.diagnostics.sort_by_key(|diagnostic| diagnostic.primary.span.start);
         Lowered { program: self.program, diagnostics: self.diagnostics }
     }

@@ -3,11 +3,14 @@
 use glam::DVec3;
 
 use crate::diag::words::counted;
-use crate::diag::{Diagnostic, codes};
+use crate::diag::{Diagnostic, Edit, Fix, codes};
 use crate::ir::{Command, Cylinder, Handle, Sphere, Surface};
 use crate::lower::Lowering;
-use crate::source::Span;
+use crate::source::{Source, Span};
 use crate::syntax::ast::{self, Shape};
+
+/// A surface for objects that have none: grey and dull.
+const USUAL_SURFACE: &str = "surface 0.1 0.1 0.1  0.7 0.7 0.7  0 0 0  1  0";
 
 /// The surface that the next object gets.
 #[derive(Clone, Copy, Debug, Default)]
@@ -84,7 +87,7 @@ fn next_order(lowering: &Lowering<'_>) -> u32 {
 }
 
 /// Reports the objects before any surface, once: a `surface` before the first of them mends them all.
-pub(super) fn check(objects: &Objects, acc: &mut Vec<Diagnostic>) {
+pub(super) fn check(source: &Source, objects: &Objects, acc: &mut Vec<Diagnostic>) {
     let Some(span) = objects.first_bare else { return };
     let message = match objects.n_bare {
         1 => "an object before any `surface`".to_owned(),
@@ -97,6 +100,11 @@ pub(super) fn check(objects: &Objects, acc: &mut Vec<Diagnostic>) {
         Some(first) => {
             diagnostic.secondary(first, "the first surface comes too late").help("move a `surface` before it")
         }
-        None => diagnostic.help("add a `surface` before it, such as `surface 0.1 0.1 0.1  0.7 0.7 0.7  0 0 0  1  0`"),
+        None => {
+            let edit = Edit::insert_line_before(source, span.start, USUAL_SURFACE);
+            diagnostic
+                .help(format!("add a `surface` before it, such as `{USUAL_SURFACE}`"))
+                .fix(Fix::guess("add a grey surface before it", vec![edit]))
+        }
     });
 }

@@ -1,7 +1,7 @@
 //! The values of arguments against the ranges of the command table.
 
 use crate::diag::words::{named, proposed, quoted, shortened};
-use crate::diag::{Code, Diagnostic, codes};
+use crate::diag::{Code, Diagnostic, Edit, Fix, Safety, codes};
 use crate::source::{Source, Span};
 use crate::syntax::spec::{CommandKind, CommandSpec, Range};
 use crate::syntax::{argument_spans, ast};
@@ -76,6 +76,12 @@ impl Values<'_> {
         self.at(&codes::NEGATIVE_SHININESS, index, message)
             .label("must be 0 or above")
             .help(format!("write {} if the sign is a slip", quoted(self.text(index).trim_start_matches('-'))))
+            .fix(self.without_sign(index))
+    }
+
+    /// Returns the fix that takes the sign from a number.
+    fn without_sign(&self, index: usize) -> Fix {
+        Fix::write(Safety::Unsafe, self.spans[index], self.text(index).trim_start_matches('-'))
     }
 
     fn radius(&self, index: usize) -> Diagnostic {
@@ -92,7 +98,8 @@ impl Values<'_> {
             let help = "write a radius above 0, or remove the object";
             (format!("the radius of a `{name}` is 0"), help.to_owned())
         };
-        self.at(&codes::RADIUS_NOT_POSITIVE, index, message).label("must be above 0").help(help)
+        let fix = (self.numbers[index] < 0.0).then(|| self.without_sign(index));
+        self.at(&codes::RADIUS_NOT_POSITIVE, index, message).label("must be above 0").help(help).fix(fix)
     }
 
     fn check_order(&self, acc: &mut Vec<Diagnostic>) {
@@ -101,16 +108,24 @@ impl Values<'_> {
         let (low_name, high_name) = (args[low].name, args[high].name);
         let (low_text, high_text) = (self.shown(low), self.shown(high));
         let span = self.spans[low].to(self.spans[high]);
-        let (message, help) = if self.numbers[low] > self.numbers[high] {
+        let (message, help, fix) = if self.numbers[low] > self.numbers[high] {
             let message = format!("`{low_name}` {low_text} is above `{high_name}` {high_text}");
-            (message, format!("swap them: {}", proposed(&self.with_swapped(low, high))))
+            let help = format!("swap them: {}", proposed(&self.with_swapped(low, high)));
+            (message, help, Some(self.swapped(low, high)))
         } else {
             let message =
                 format!("`{low_name}` and `{high_name}` are both {low_text}: the `{}` has no height", self.spec.name);
-            (message, format!("write a `{high_name}` above {low_text}"))
+            (message, format!("write a `{high_name}` above {low_text}"), None)
         };
         let label = format!("`{low_name}` must be below `{high_name}`");
-        acc.push(Diagnostic::new(&codes::HEIGHTS_NOT_RISING, span, message).label(label).help(help));
+        acc.push(Diagnostic::new(&codes::HEIGHTS_NOT_RISING, span, message).label(label).help(help).fix(fix));
+    }
+
+    /// Returns the fix that swaps two arguments.
+    fn swapped(&self, a: usize, b: usize) -> Fix {
+        let edits = vec![Edit::replace(self.spans[a], self.text(b)), Edit::replace(self.spans[b], self.text(a))];
+        let names = self.spec.numbers();
+        Fix::guess(format!("swap `{}` and `{}`", names[a].name, names[b].name), edits)
     }
 
     /// Returns the command with two of its arguments swapped.
@@ -127,6 +142,21 @@ impl Values<'_> {
         let numbers = || outside.iter().map(|&index| self.numbers[index]);
         numbers().all(|number| number > 0.0 && number <= 255.0 && number.fract() == 0.0)
             && numbers().any(|n| n >= LEAST)
+    }
+
+    /// Returns the fix that brings a colour on a scale to 255 to one on a scale to 1, each channel rounded so that it is
+    /// the same step of a pixel. `index` is that of one of its channels.
+    fn divided_by_255(&self, index: usize) -> Fix {
+        /// Three digits tell 256 steps apart, and read well.
+        const N_DIGITS: usize = 3;
+        let first = index - index % 3;
+        let channels = first..(first + 3).min(self.numbers.len());
+        let edits = channels.map(|channel| {
+            let text = format!("{:.N_DIGITS$}", self.numbers[channel] / 255.0);
+            let short = text.trim_end_matches('0').trim_end_matches('.');
+            Edit::replace(self.spans[channel], short)
+        });
+        Fix::guess("divide the colour by 255", edits.collect())
     }
 
     /// Reports the colours and coefficients outside 0…1, all of a command at once.
@@ -151,7 +181,7 @@ impl Values<'_> {
         };
         let diagnostic = others.iter().fold(diagnostic, label);
         acc.push(if self.is_in_bytes(&outside) {
-            diagnostic.help("if the colour is on a scale to 255, divide it by 255")
+            diagnostic.help("if the colour is on a scale to 255, divide it by 255").fix(self.divided_by_255(first))
         } else {
             diagnostic
         });

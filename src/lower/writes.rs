@@ -4,16 +4,18 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use crate::diag::words::{counted, quoted};
-use crate::diag::{Diagnostic, codes};
+use crate::diag::{Diagnostic, Edit, Fix, codes};
 use crate::ir::Command;
 use crate::lower::Lowering;
-use crate::source::Span;
+use crate::source::{Source, Span};
 use crate::syntax::spec::CommandKind;
 use crate::syntax::{ast, file_name};
 
 /// What has been written so far, and since.
 #[derive(Debug, Default)]
 pub(super) struct Writes<'s> {
+    /// The first command of the scene.
+    first_command: Option<Span>,
     /// The last command of the scene so far.
     last_command: Option<Span>,
     last_write: Option<Span>,
@@ -28,6 +30,7 @@ pub(super) struct Writes<'s> {
 impl Writes<'_> {
     /// Takes note of any command.
     pub(super) fn see(&mut self, kind: Option<CommandKind>, span: Span) {
+        self.first_command.get_or_insert(span);
         self.last_command = Some(span);
         if kind == Some(CommandKind::Write) {
             self.last_write = Some(span);
@@ -48,21 +51,24 @@ pub(super) fn lower_write(lowering: &mut Lowering<'_>, command: &ast::Command<'_
         return;
     }
     let Some((name, span)) = file_name(lowering.source, command.span) else { return };
-    check_fov(&mut lowering.writes, command.span, &mut lowering.diagnostics);
+    check_fov(lowering.source, &mut lowering.writes, command.span, &mut lowering.diagnostics);
     check_name(&mut lowering.writes, name, span, &mut lowering.diagnostics);
     lowering.emit(Command::Write(Arc::from(name)), span);
 }
 
 /// Reports the first write before which no `fov` stands.
-fn check_fov(writes: &mut Writes<'_>, span: Span, acc: &mut Vec<Diagnostic>) {
+fn check_fov(source: &Source, writes: &mut Writes<'_>, span: Span, acc: &mut Vec<Diagnostic>) {
     if writes.has_fov || writes.has_missed_fov {
         return;
     }
     writes.has_missed_fov = true;
+    let top = writes.first_command.unwrap_or(span).start;
+    let fov = vec![Edit::insert_line_before(source, top, "fov 60")];
     acc.push(
         Diagnostic::new(&codes::NO_FOV, span, "a `write` with no `fov` before it")
             .label("is rendered with a field of view of 60 degrees")
-            .help("add `fov 60`, or another angle, before it"),
+            .help("add `fov 60`, or another angle, before it")
+            .fix(Fix::safe("add `fov 60` at the top", fov)),
     );
 }
 
@@ -80,9 +86,9 @@ fn check_name<'s>(writes: &mut Writes<'s>, name: &'s str, span: Span, acc: &mut 
 }
 
 /// Reports a scene without a write, or one that goes on behind the last.
-pub(super) fn check(writes: &Writes<'_>, acc: &mut Vec<Diagnostic>) {
+pub(super) fn check(source: &Source, writes: &Writes<'_>, acc: &mut Vec<Diagnostic>) {
     let Some(last_write) = writes.last_write else {
-        acc.push(no_write(writes));
+        acc.push(no_write(source, writes));
         return;
     };
     if let Some((span, n)) = writes.behind {
@@ -99,7 +105,7 @@ pub(super) fn check(writes: &Writes<'_>, acc: &mut Vec<Diagnostic>) {
     }
 }
 
-fn no_write(writes: &Writes<'_>) -> Diagnostic {
+fn no_write(source: &Source, writes: &Writes<'_>) -> Diagnostic {
     let (span, label) = match writes.last_command {
         Some(span) => (span, "the last command"),
         None => (Span::at(0), "no command at all"),
@@ -107,4 +113,5 @@ fn no_write(writes: &Writes<'_>) -> Diagnostic {
     Diagnostic::new(&codes::NO_WRITE, span, "the scene has no `write`: it makes no image")
         .label(label)
         .help("end the scene with a `write`, such as `write picture.png`")
+        .fix(Fix::guess("add a `write` at the end", vec![Edit::append_line(source, "write picture.png")]))
 }

@@ -3,7 +3,7 @@
 //! Each function panics when its law is broken; property tests and fuzz targets feed them.
 
 use crate::diag::render::{Color, render_human, render_json, render_short};
-use crate::diag::{Code, Diagnostic, Severity};
+use crate::diag::{Code, Diagnostic, Severity, fix};
 use crate::lower::lower;
 use crate::source::Source;
 use crate::syntax::{Parse, Runs, ast, lex, parse, parse_in_chunks};
@@ -119,6 +119,10 @@ fn assert_is_sound(source: &Source, diagnostic: &Diagnostic) {
     for label in std::iter::once(&diagnostic.primary).chain(&diagnostic.secondary) {
         assert!(source.text().get(label.span.range()).is_some(), "{label:?} lies outside the text");
         assert!(!label.message.is_empty(), "a label says nothing: {diagnostic:#?}");
+    }
+    for offered in &diagnostic.fixes {
+        assert!(!offered.title.is_empty() && !offered.edits.is_empty(), "a fix does nothing: {diagnostic:#?}");
+        assert_eq!(fix::apply(source.text(), [offered]).is_applied, [true], "a fix does not fit: {offered:#?}");
     }
     let message = &diagnostic.message;
     // A point behind a digit is part of a number of the scene, `-2.`, and no stop.

@@ -3,9 +3,9 @@
 use chumsky::error::Rich;
 
 use crate::diag::words::{counted, listed, named, ordinal, quoted};
-use crate::diag::{Diagnostic, codes};
+use crate::diag::{Diagnostic, Edit, Fix, Safety, codes, fix};
 use crate::source::{Source, Span};
-use crate::syntax::parser::{grammar, numeral, path};
+use crate::syntax::parser::{grammar, names, numeral, path};
 use crate::syntax::spec::{ArgSpec, Arguments, CommandSpec};
 use crate::syntax::token::{Token, TokenKind};
 
@@ -83,6 +83,33 @@ impl BadCommand<'_> {
         self.source.slice(arg.span)
     }
 
+    /// Returns the place of the command, from its name to its last argument.
+    fn span(&self) -> Span {
+        self.args.last().map_or(self.name, |last| self.name.to(last.span))
+    }
+
+    /// Returns the fix that writes `command` in place of this one, and what follows on a line of its own.
+    pub(super) fn rewritten(&self, command: &str) -> Fix {
+        let mut fix = Fix::write(Safety::Unsafe, self.span(), command);
+        fix.edits.extend(self.next_name.map(|next| self.broken_before(next)));
+        fix
+    }
+
+    /// Returns the fix that removes the arguments below `surplus` with the blanks before them.
+    pub(super) fn without_surplus(&self, surplus: Span) -> Fix {
+        let own = self.args.iter().take_while(|arg| arg.span.end <= surplus.start).last();
+        let start = own.map_or(self.name, |own| own.span).end;
+        let removed = quoted(self.source.slice(surplus));
+        let mut edits = vec![Edit::remove(Span::new(start, surplus.end))];
+        edits.extend(self.next_name.map(|next| self.broken_before(next)));
+        Fix::guess(format!("remove {removed}"), edits)
+    }
+
+    /// Returns the edit that begins a new line before the command named at `next`.
+    fn broken_before(&self, next: Span) -> Edit {
+        Edit::replace(Span::new(self.span().end, next.start), fix::line_end(self.source))
+    }
+
     /// Returns how many arguments the command takes.
     pub(super) fn n_expected(&self) -> usize {
         match self.spec.arguments {
@@ -138,7 +165,8 @@ fn missing(command: &BadCommand<'_>, index: usize) -> Diagnostic {
     };
     let mut diagnostic = Diagnostic::new(&codes::MISSING_ARGUMENT, command.name, command.count_message())
         .label(command.needs())
-        .help(help);
+        .help(help)
+        .fix(next_line_joined(command, index));
     if let [first, .., last] | [first @ last] = command.args {
         let given = listed(args[..index].iter().map(|arg| arg.name));
         diagnostic = diagnostic.secondary(first.span.to(last.span), format!("given: {given}"));
@@ -160,6 +188,20 @@ fn glued_comment(command: &BadCommand<'_>) -> Option<Span> {
     is_glued.then(|| Span::new(start, start + comment.trim_end().len() as u32))
 }
 
+/// Returns the fix that joins the next line to this one, if nothing is missing then. `n` arguments are there already.
+fn next_line_joined(command: &BadCommand<'_>, n: usize) -> Option<Fix> {
+    let end = command.span().end;
+    let rest = &command.source.text()[end as usize..];
+    let next = rest.trim_start();
+    let between = &rest[..rest.len() - next.len()];
+    let line = next.lines().next().unwrap_or_default();
+    let arguments = line.split('#').next().unwrap_or_default();
+    let n_more = arguments.split_ascii_whitespace().take_while(|word| numeral::is_number(word)).count();
+    let is_whole = n + n_more == command.n_expected() && n_more == arguments.split_ascii_whitespace().count();
+    let joined = Edit::replace(Span::new(end, end + between.len() as u32), " ");
+    (is_whole && between.matches('\n').count() == 1).then(|| Fix::guess("join the next line to this one", vec![joined]))
+}
+
 /// Tells whether the next line begins with a number, as if it were part of this one.
 fn goes_on_in_next_line(command: &BadCommand<'_>) -> bool {
     let rest = &command.source.text()[command.name.end as usize..];
@@ -172,8 +214,8 @@ fn goes_on_in_next_line(command: &BadCommand<'_>) -> bool {
 fn surplus(command: &BadCommand<'_>, index: usize) -> Diagnostic {
     let surplus = &command.args[index..];
     let span = surplus.iter().fold(surplus[0].span, |span, arg| span.to(arg.span));
-    let help = match command.spec.arguments {
-        Arguments::Numbers(_) => help_for_surplus(command, surplus),
+    let (help, fix) = match command.spec.arguments {
+        Arguments::Numbers(_) => help_for_surplus(command, surplus, span),
         Arguments::FileName(_) => path::help_for_surplus(command, span),
     };
     let label = if surplus.len() == 1 { "surplus" } else { "all of these are surplus" };
@@ -181,20 +223,21 @@ fn surplus(command: &BadCommand<'_>, index: usize) -> Diagnostic {
         .label(label)
         .secondary(command.name, command.needs())
         .help(help)
+        .fix(fix)
 }
 
-/// Says what to do about numbers that are too many.
-fn help_for_surplus(command: &BadCommand<'_>, surplus: &[Token]) -> String {
-    const COMMENT_MARKS: [&str; 6] = ["//", "/*", ";", "--", "%", "'"];
+/// Says what to do about numbers that are too many; `span` is their place.
+fn help_for_surplus(command: &BadCommand<'_>, surplus: &[Token], span: Span) -> (String, Fix) {
     let first = command.text(&surplus[0]);
-    if COMMENT_MARKS.iter().any(|mark| first.starts_with(mark)) {
-        return "a comment begins with `#`".to_owned();
+    if let Some(fix) = names::comment_mark_replaced(first, span.start) {
+        return ("a comment begins with `#`".to_owned(), fix);
     }
     let last_name = command.spec.numbers().last().map_or("", |arg: &ArgSpec| arg.name);
-    match surplus {
+    let help = match surplus {
         [_] => format!("remove {}: nothing follows `{last_name}`", quoted(first)),
         _ => format!("remove the {} arguments behind `{last_name}`", surplus.len()),
-    }
+    };
+    (help, command.without_surplus(span))
 }
 
 /// Reports a command that is whole and another that follows it on the same line.
@@ -208,5 +251,6 @@ fn second_command(command: &BadCommand<'_>, next_name: Span) -> Diagnostic {
     .label("begins a second command")
     .secondary(command.name, command.needs())
     .help(format!("begin a new line before `{next}`"))
+    .fix(Fix::guess(format!("begin a new line before `{next}`"), vec![command.broken_before(next_name)]))
     .note("a line holds one command")
 }

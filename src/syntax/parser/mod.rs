@@ -123,7 +123,7 @@ impl<'s> Runs<'s> {
         let mut diagnostics = Vec::new();
         if text::check_encoding(self.source).is_none() {
             text::check_bytes(self.source, &mut diagnostics);
-            diagnostics.extend(self.lone_returns.diagnose());
+            diagnostics.extend(self.lone_returns.diagnose(self.source));
         }
         diagnostics
     }

@@ -1,7 +1,7 @@
 //! What a line is that begins with no command.
 
 use crate::diag::words::{listed, proposed, quoted};
-use crate::diag::{Diagnostic, codes};
+use crate::diag::{Diagnostic, Edit, Fix, Safety, codes};
 use crate::source::{Source, Span};
 use crate::syntax::parser::numeral::{SEPARATORS, numbers_between};
 use crate::syntax::spec::{self, Arguments, COMMANDS, CommandKind, CommandSpec};
@@ -14,12 +14,25 @@ const COMMENT_MARKS: [&str; 7] = ["//", "/*", ";", "--", "%", "'", "!"];
 pub(super) fn diagnose(source: &Source, name: &Token, args: &[Token]) -> (Diagnostic, Option<CommandKind>) {
     let text = source.slice(name.span);
     if name.kind == TokenKind::Number {
-        return (begins_with_number(text, name.span), find_by_arguments(source, name, args));
+        let meant = find_by_arguments(source, name, args);
+        let values = || std::iter::once(name).chain(args).map(|arg| source.slice(arg.span).parse());
+        let allows = |kind: &CommandKind| {
+            let mut allowed = kind.spec().numbers().iter().zip(values());
+            allowed.all(|(arg, value)| value.is_ok_and(|value| arg.range.allows(value)))
+        };
+        let named = meant.filter(allows).map(|kind| {
+            let edit = Edit::insert(name.span.start, format!("{} ", kind.name()));
+            Fix::guess(format!("begin the line with `{}`", kind.name()), vec![edit])
+        });
+        return (begins_with_number(text, name.span).fix(named), meant);
     }
     if let Some(guess) = guess(text, source, args) {
         let message = format!("unknown command {}", quoted(text));
-        let diagnostic =
-            Diagnostic::new(&codes::UNKNOWN_COMMAND, name.span, message).label(guess.label).help(guess.help);
+        let place = if guess.is_whole { args.iter().fold(name.span, |span, arg| span.to(arg.span)) } else { name.span };
+        let diagnostic = Diagnostic::new(&codes::UNKNOWN_COMMAND, name.span, message)
+            .label(guess.label)
+            .help(guess.help)
+            .fix(Fix::write(guess.safety, place, guess.repair));
         return (diagnostic, Some(guess.spec.kind));
     }
     (unlike_any(text, name.span), by_arguments(source, args))
@@ -33,10 +46,11 @@ fn begins_with_number(text: &str, span: Span) -> Diagnostic {
 }
 
 fn unlike_any(text: &str, span: Span) -> Diagnostic {
-    if COMMENT_MARKS.iter().any(|mark| text.starts_with(mark)) {
+    if let Some(fix) = comment_mark_replaced(text, span.start) {
         return Diagnostic::new(&codes::NO_COMMAND, span, format!("{} begins no comment", quoted(text)))
             .label("neither a command nor a comment")
-            .help("a comment begins with `#`");
+            .help("a comment begins with `#`")
+            .fix(fix);
     }
     let commands = format!("the commands are {}", listed(COMMANDS.iter().map(|command| command.name)));
     if text.starts_with(|first: char| first.is_alphabetic() || first == '_') {
@@ -49,16 +63,42 @@ fn unlike_any(text: &str, span: Span) -> Diagnostic {
         .help(commands)
 }
 
+/// Returns the fix that begins a comment with `#`, if the word `text` at `start` begins one as in another language.
+pub(super) fn comment_mark_replaced(text: &str, start: u32) -> Option<Fix> {
+    let mark = COMMENT_MARKS.iter().find(|mark| text.starts_with(**mark))?;
+    let place = Span::new(start, start + mark.len() as u32);
+    Some(Fix::guess("begin the comment with `#`", vec![Edit::replace(place, "#")]))
+}
+
 /// A command that an unknown word was probably meant to be.
 struct Guess {
     spec: &'static CommandSpec,
     label: String,
     help: String,
+    /// What to write instead of the word, and how sure that is.
+    repair: String,
+    safety: Safety,
+    /// Whether the repair stands for the arguments too.
+    is_whole: bool,
 }
 
 impl Guess {
     fn new(spec: &'static CommandSpec, label: &str) -> Self {
-        Self { spec, label: label.to_owned(), help: format!("did you mean `{}`?", spec.name) }
+        let help = format!("did you mean `{}`?", spec.name);
+        Self {
+            spec,
+            label: label.to_owned(),
+            help,
+            repair: spec.name.to_owned(),
+            safety: Safety::Unsafe,
+            is_whole: false,
+        }
+    }
+
+    /// Makes the guess that the first word is `spec` with its first argument glued to it.
+    fn glued(spec: &'static CommandSpec, help: String, repair: String, is_whole: bool) -> Self {
+        let guess = Self::new(spec, "a command and its argument in one word");
+        Self { help, repair, is_whole, ..guess }
     }
 }
 
@@ -66,8 +106,8 @@ impl Guess {
 fn guess(text: &str, source: &Source, args: &[Token]) -> Option<Guess> {
     let lower = text.to_lowercase();
     if let Some(spec) = spec::find(&lower) {
-        let help = format!("write `{}`", spec.name);
-        return Some(Guess { spec, label: "command names are lower case".to_owned(), help });
+        let guess = Guess::new(spec, "command names are lower case");
+        return Some(Guess { help: proposed(spec.name), safety: Safety::Safe, ..guess });
     }
     if let Some(spec) = spec::find(lower.trim_matches(|c: char| !c.is_alphanumeric())) {
         return Some(Guess::new(spec, "a command is a word without punctuation"));
@@ -87,18 +127,21 @@ fn glued(lower: &str, text: &str, source: &Source, args: &[Token]) -> Option<Gue
     }
     let bare_name = rest.trim_matches(|c| SEPARATORS.contains(&c) || matches!(c, '=' | ':' | '"' | '\''));
     if matches!(spec.arguments, Arguments::FileName(_)) && args.is_empty() && bare_name.ends_with(".png") {
-        let help = proposed(&format!("{} {bare_name}", spec.name));
-        return Some(Guess { spec, label: "a command and its argument in one word".to_owned(), help });
+        let repair = format!("{} {bare_name}", spec.name);
+        return Some(Guess::glued(spec, proposed(&repair), repair, true));
     }
     let texts =
         std::iter::once(rest.trim_start_matches(['=', ':'])).chain(args.iter().map(|arg| source.slice(arg.span)));
-    let help = match numbers_between(texts, &SEPARATORS) {
+    match numbers_between(texts, &SEPARATORS) {
         Some(numbers) if numbers.len() == spec.numbers().len() => {
-            proposed(&format!("{} {}", spec.name, numbers.join(" ")))
+            let repair = format!("{} {}", spec.name, numbers.join(" "));
+            Some(Guess::glued(spec, proposed(&repair), repair, true))
         }
-        _ => format!("put a blank between `{}` and {}", spec.name, quoted(rest)),
-    };
-    Some(Guess { spec, label: "a command and its argument in one word".to_owned(), help })
+        _ => {
+            let help = format!("put a blank between `{}` and {}", spec.name, quoted(rest));
+            Some(Guess::glued(spec, help, format!("{} {rest}", spec.name), false))
+        }
+    }
 }
 
 /// Finds the command that begins like this, if it is the only one.

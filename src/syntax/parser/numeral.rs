@@ -1,7 +1,7 @@
 //! What is wrong with a text that should be a number.
 
 use crate::diag::words::{proposed, quoted};
-use crate::diag::{Code, Diagnostic, codes};
+use crate::diag::{Code, Diagnostic, Fix, Safety, codes};
 use crate::source::{Source, Span};
 use crate::syntax::lexer::lex_line;
 use crate::syntax::parser::errors::BadCommand;
@@ -20,16 +20,28 @@ struct Finding {
     code: &'static Code,
     why: String,
     help: String,
+    /// The text to write, if there is one, and how sure it is.
+    repair: Option<(Safety, String)>,
 }
 
 impl Finding {
     fn malformed(why: impl Into<String>, help: impl Into<String>) -> Self {
-        Self { code: &codes::MALFORMED_NUMBER, why: why.into(), help: help.into() }
+        Self { code: &codes::MALFORMED_NUMBER, why: why.into(), help: help.into(), repair: None }
     }
 
-    /// Makes a finding whose help is to write `repair`; none when that is no number either.
+    /// Makes a finding whose help is to write `repair`, which nobody can have meant otherwise; none when that is no
+    /// number either.
+    fn slip(why: impl Into<String>, repair: &str) -> Option<Self> {
+        is_number(repair).then(|| Self::malformed(why, proposed(repair)).with(Safety::Safe, repair))
+    }
+
+    /// Makes a finding whose help is to write `repair`, which is a guess; none when that is no number either.
     fn repaired(why: impl Into<String>, repair: &str) -> Option<Self> {
-        is_number(repair).then(|| Self::malformed(why, proposed(repair)))
+        is_number(repair).then(|| Self::malformed(why, proposed(repair)).with(Safety::Unsafe, repair))
+    }
+
+    fn with(self, safety: Safety, repair: impl Into<String>) -> Self {
+        Self { repair: Some((safety, repair.into())), ..self }
     }
 }
 
@@ -56,23 +68,25 @@ pub(super) fn is_sign(text: &str) -> bool {
 pub(super) fn diagnose(source: &Source, span: Span, spec: &CommandSpec, arg: &ArgSpec) -> Diagnostic {
     let text = source.slice(span);
     let label = format!("the `{}` of `{}`", arg.name, spec.name);
-    let (code, message, help) = match find(text) {
-        Some(Finding { code, why, help }) if code == &codes::MALFORMED_NUMBER => {
-            (code, format!("{} is not a number: {why}", quoted(text)), help)
+    let (code, message, help, repair) = match find(text) {
+        Some(Finding { code, why, help, repair }) if code == &codes::MALFORMED_NUMBER => {
+            (code, format!("{} is not a number: {why}", quoted(text)), help, repair)
         }
-        Some(Finding { code, why, help }) => {
+        Some(Finding { code, why, help, repair }) => {
             // What is proposed for any number would be the next mistake where the range is narrow.
             let is_narrow = matches!(arg.range, Range::PositiveBelow(_));
             let help = if is_narrow { format!("write a usual number, as in `{}`", spec.example) } else { help };
-            (code, format!("{} {why}", quoted(text)), help)
+            (code, format!("{} {why}", quoted(text)), help, repair)
         }
         None => (
             &codes::MALFORMED_NUMBER,
             format!("{} is not a number", quoted(text)),
             format!("write a number for `{}`, such as `1`, `-0.25` or `1e-3`", arg.name),
+            None,
         ),
     };
-    Diagnostic::new(code, span, message).label(label).help(help)
+    let fix = repair.map(|(safety, repair)| Fix::write(safety, span, repair));
+    Diagnostic::new(code, span, message).label(label).help(help).fix(fix)
 }
 
 /// Reports commas and brackets when the line would be right without them: one mistake, however many of them.
@@ -92,15 +106,18 @@ pub(super) fn find_commas(command: &BadCommand<'_>) -> Option<Diagnostic> {
         _ if n_commas == n_found => "commas",
         _ => "punctuation",
     };
-    let repair = proposed(&format!("{} {}", command.spec.name, pieces.join(" ")));
+    let repair = format!("{} {}", command.spec.name, pieces.join(" "));
     let help = match command.next_name {
-        Some(next) => format!("{repair}, and begin a new line before {}", quoted(command.source.slice(next))),
-        None => repair,
+        Some(next) => {
+            format!("{}, and begin a new line before {}", proposed(&repair), quoted(command.source.slice(next)))
+        }
+        None => proposed(&repair),
     };
     let message = format!("{what} among the numbers of `{}`", command.spec.name);
     let diagnostic = Diagnostic::new(&codes::MALFORMED_NUMBER, first.span, message)
         .label("blanks alone separate numbers")
-        .help(help);
+        .help(help)
+        .fix(command.rewritten(&repair));
     Some(with_separator.fold(diagnostic, |diagnostic, arg| diagnostic.secondary(arg.span, "here too")))
 }
 
@@ -119,6 +136,7 @@ pub(super) fn find_stray_words(command: &BadCommand<'_>) -> Option<Diagnostic> {
     let message = format!("{} among the numbers of `{}`", quoted(command.text(first)), command.spec.name);
     let diagnostic =
         Diagnostic::new(&codes::MALFORMED_NUMBER, first.span, message).label("not a number").help(proposed(&repair));
+    let diagnostic = diagnostic.fix(command.rewritten(&repair));
     Some(words[1..].iter().fold(diagnostic, |diagnostic, word| diagnostic.secondary(word.span, "here too")))
 }
 
@@ -157,14 +175,14 @@ fn overflow(text: &str) -> Option<Finding> {
         code: &codes::NUMBER_OVERFLOW,
         why: "is too large a number".to_owned(),
         help: "the largest number is about 1.8e308".to_owned(),
+        repair: None,
     })
 }
 
 fn not_finite(text: &str) -> Option<Finding> {
     const INFINITIES: [&str; 5] = ["inf", "infinity", "1.#inf", "∞", "infty"];
     let word = text.trim_start_matches(['+', '-']).to_lowercase();
-    let found =
-        |why: &str, help: &str| Some(Finding { code: &codes::NOT_FINITE, why: why.to_owned(), help: help.to_owned() });
+    let found = |why: &str, help: &str| Some(Finding { code: &codes::NOT_FINITE, ..Finding::malformed(why, help) });
     if INFINITIES.contains(&word.as_str()) {
         return found("is not finite, as every number of a scene is", "write a large number, such as `1e9`");
     }
@@ -176,13 +194,13 @@ fn sign_apart(text: &str) -> Option<Finding> {
     let mut parts = text.split([' ', '\t']).filter(|part| !part.is_empty());
     let (sign, digits) = (parts.next()?, parts.next()?);
     let sign = sign.replace(FALSE_MINUSES, "-");
-    Finding::repaired("a blank follows its sign", &format!("{sign}{digits}"))
+    Finding::slip("a blank follows its sign", &format!("{sign}{digits}"))
 }
 
 fn false_minus(text: &str) -> Option<Finding> {
     let found = text.chars().find(|character| FALSE_MINUSES.contains(character))?;
     let why = format!("`{found}` (U+{:04X}) is not the minus sign", u32::from(found));
-    Finding::repaired(why, &text.replace(FALSE_MINUSES, "-"))
+    Finding::slip(why, &text.replace(FALSE_MINUSES, "-"))
 }
 
 fn false_digits(text: &str) -> Option<Finding> {
@@ -200,7 +218,7 @@ fn several_signs(text: &str) -> Option<Finding> {
 fn comma(text: &str) -> Option<Finding> {
     let bare = text.trim_matches([',', ';']);
     if bare != text {
-        return Finding::repaired("blanks alone separate numbers", bare);
+        return Finding::slip("blanks alone separate numbers", bare);
     }
     if text.contains('.') {
         return Finding::repaired("digits stand without separators", &text.replace(',', ""));
@@ -210,7 +228,10 @@ fn comma(text: &str) -> Option<Finding> {
         0 => None,
         _ => {
             let all_numbers = text.split(',').all(is_number);
-            all_numbers.then(|| Finding::malformed("commas do not separate numbers", "put blanks between the numbers"))
+            all_numbers.then(|| {
+                Finding::malformed("commas do not separate numbers", "put blanks between the numbers")
+                    .with(Safety::Unsafe, text.replace(',', " "))
+            })
         }
     }
 }
@@ -224,7 +245,7 @@ fn several_points(text: &str) -> Option<Finding> {
 fn digit_groups(text: &str) -> Option<Finding> {
     const GROUPERS: [char; 2] = ['_', '\''];
     let is_grouped = text.contains(GROUPERS) && !text.starts_with(GROUPERS) && !text.ends_with(GROUPERS);
-    is_grouped.then(|| Finding::repaired("digits stand without separators", &text.replace(GROUPERS, "")))?
+    is_grouped.then(|| Finding::slip("digits stand without separators", &text.replace(GROUPERS, "")))?
 }
 
 fn other_base(text: &str) -> Option<Finding> {
@@ -239,19 +260,19 @@ fn other_base(text: &str) -> Option<Finding> {
         _ => return None,
     };
     let value = u64::from_str_radix(&digits[2..], base).ok()?;
-    Finding::repaired(format!("{name} numbers are not part of the language"), &format!("{sign}{value}"))
+    Finding::slip(format!("{name} numbers are not part of the language"), &format!("{sign}{value}"))
 }
 
 fn bad_exponent(text: &str) -> Option<Finding> {
     if text.contains(['d', 'D']) {
-        return Finding::repaired("an exponent begins with `e`", &text.replace(['d', 'D'], "e"));
+        return Finding::slip("an exponent begins with `e`", &text.replace(['d', 'D'], "e"));
     }
     let (mantissa, exponent) = text.split_once(['e', 'E'])?;
     if !is_number(mantissa) {
         return None;
     }
     match exponent {
-        "" | "+" | "-" => Some(Finding::malformed("its exponent has no digits", proposed(mantissa))),
+        "" | "+" | "-" => Finding::repaired("its exponent has no digits", mantissa),
         _ => is_number(exponent).then(|| {
             Finding::malformed("its exponent is not a whole number", "write a whole exponent, such as `1e-3`")
         }),
@@ -278,7 +299,7 @@ fn fraction(text: &str) -> Option<Finding> {
 
 fn enclosed(text: &str) -> Option<Finding> {
     let bare = text.trim_matches(|c: char| SEPARATORS.contains(&c) || matches!(c, '"' | '\'' | '`'));
-    (bare != text).then(|| Finding::repaired("a number stands without brackets and quotes", bare))?
+    (bare != text).then(|| Finding::slip("a number stands without brackets and quotes", bare))?
 }
 
 fn named(text: &str) -> Option<Finding> {
@@ -292,12 +313,13 @@ fn glued(text: &str) -> Option<Finding> {
     let (number, rest) = ends.find_map(|end| is_number(&text[..end]).then(|| text.split_at(end)))?;
     if is_number(rest) {
         let help = format!("put a blank between {} and {}", quoted(number), quoted(rest));
-        return Some(Finding::malformed("it is two numbers in one", help));
+        let apart = format!("{number} {rest}");
+        return Some(Finding::malformed("it is two numbers in one", help).with(Safety::Unsafe, apart));
     }
     if rest.starts_with(['*', '/', '^', '+', '-']) {
         return Some(Finding::malformed("a scene does not calculate", "write the result as one number"));
     }
-    Some(Finding::malformed(format!("{} follows the number", quoted(rest)), proposed(number)))
+    Finding::repaired(format!("{} follows the number", quoted(rest)), number)
 }
 
 fn no_digits(text: &str) -> Option<Finding> {

@@ -1,7 +1,7 @@
 //! What is wrong with the file name of a `write`.
 
 use crate::diag::words::{proposed, quoted};
-use crate::diag::{Diagnostic, codes};
+use crate::diag::{Diagnostic, Edit, Fix, Safety, codes};
 use crate::source::{Source, Span};
 use crate::syntax::parser::errors::BadCommand;
 use crate::syntax::token::{Token, TokenKind};
@@ -30,38 +30,65 @@ pub(super) fn not_a_png(source: &Source, name: &Token) -> Diagnostic {
             .label("no name between the quotes")
             .help("write `\"picture.png\"`");
     }
+    let repair = repair_ending(text, name.kind);
     Diagnostic::new(&codes::NOT_A_PNG, name.span, format!("the file name {} does not end in `{ENDING}`", quoted(text)))
         .label("not the name of a PNG image")
-        .help(help_for_ending(text, name.kind))
+        .help(repair.as_ref().map_or("add the name of a file, such as `picture.png`".to_owned(), Repair::help))
+        .fix(repair.map(|repair| Fix::write(Safety::Unsafe, name.span, repair.text())))
         .note("images are saved as PNG, whatever their name")
 }
 
-fn help_for_ending(name: &str, kind: TokenKind) -> String {
+/// What to write in place of a name.
+enum Repair {
+    /// This name.
+    Name(String),
+    /// This name and, behind it, this comment.
+    Commented(String, String),
+}
+
+impl Repair {
+    fn text(&self) -> String {
+        match self {
+            Self::Name(name) => in_quotes_if_needed(name),
+            Self::Commented(name, comment) => format!("{name} #{comment}"),
+        }
+    }
+
+    fn help(&self) -> String {
+        match self {
+            Self::Name(_) => proposed(&self.text()),
+            Self::Commented(..) => format!("put a blank before the comment: `{}`", self.text()),
+        }
+    }
+}
+
+/// Finds the name that was meant, if any of it is there.
+fn repair_ending(name: &str, kind: TokenKind) -> Option<Repair> {
     const OTHER_ENDINGS: [&str; 8] = ["jpg", "jpeg", "bmp", "gif", "ppm", "tga", "tiff", "tif"];
     let bare = name.trim_matches(|c| FALSE_QUOTES.contains(&c)).trim_end_matches([';', ',', '.', ' ', '\t']);
     if is_png(bare) {
-        return written(bare);
+        return Some(Repair::Name(bare.to_owned()));
     }
     if bare.is_empty() || bare.ends_with('/') {
-        return "add the name of a file, such as `picture.png`".to_owned();
+        return None;
     }
     if let (TokenKind::Path, Some((before, comment))) = (kind, name.split_once('#'))
         && is_png(before)
     {
-        return format!("put a blank before the comment: `{before} #{comment}`");
+        return Some(Repair::Commented(before.to_owned(), comment.to_owned()));
     }
     let (stem, ending) = name.rsplit_once('.').unwrap_or((name, ""));
     let lower = ending.to_ascii_lowercase();
     if lower == "png" || OTHER_ENDINGS.contains(&lower.as_str()) {
-        return written(&format!("{stem}{ENDING}"));
+        return Some(Repair::Name(format!("{stem}{ENDING}")));
     }
-    written(&format!("{bare}{ENDING}"))
+    Some(Repair::Name(format!("{bare}{ENDING}")))
 }
 
-/// Returns the help to write this name, in quotes where they are needed.
-fn written(name: &str) -> String {
+/// Returns the name as a scene has to write it.
+fn in_quotes_if_needed(name: &str) -> String {
     let needs_quotes = name.contains([' ', '\t']) || name.starts_with('#');
-    if needs_quotes { proposed(&format!("\"{name}\"")) } else { proposed(name) }
+    if needs_quotes { format!("\"{name}\"") } else { name.to_owned() }
 }
 
 /// Returns the diagnostic of a `write` with nothing behind it. `name` is the place of the word `write`.
@@ -69,15 +96,19 @@ pub(super) fn missing(source: &Source, name: Span) -> Diagnostic {
     let lines = source.lines();
     let line_end = lines.line_span(source.text(), lines.line_of(name.start)).end;
     let rest = source.slice(Span::new(name.end, line_end.max(name.end)));
-    let help = match rest.split_once('#') {
-        Some((_, comment)) if is_png(comment.trim()) => {
-            format!("`#` begins a comment: put the name in quotes, {}", quoted(&format!("\"#{}\"", comment.trim())))
+    let (help, fix) = match rest.split_once('#') {
+        Some((_, comment)) if is_png(comment.trim()) && !comment.contains('"') => {
+            let repair = format!("\"#{}\"", comment.trim());
+            let help = format!("`#` begins a comment: put the name in quotes, {}", quoted(&repair));
+            let place = Span::new(name.end, name.end + rest.trim_end().len() as u32);
+            (help, Some(Fix::guess(proposed(&repair), vec![Edit::replace(place, format!(" {repair}"))])))
         }
-        _ => "add the name of the image, such as `write picture.png`".to_owned(),
+        _ => ("add the name of the image, such as `write picture.png`".to_owned(), None),
     };
     Diagnostic::new(&codes::MISSING_FILE_NAME, name, "`write` takes 1 file name, found none")
         .label("needs name.png")
         .help(help)
+        .fix(fix)
 }
 
 /// Returns the diagnostic of a quote that the line does not close.
@@ -87,14 +118,18 @@ pub(super) fn unterminated_quote(source: &Source, span: Span) -> Diagnostic {
     Diagnostic::new(&codes::UNTERMINATED_QUOTE, span, "the quote is not closed on its line")
         .label("begins here")
         .help(format!("close it: {}", quoted(&repair)))
+        .fix(Fix::write(Safety::Unsafe, span, repair))
 }
 
 /// Says what to do about words behind a file name. `surplus` is their place.
-pub(super) fn help_for_surplus(command: &BadCommand<'_>, surplus: Span) -> String {
+pub(super) fn help_for_surplus(command: &BadCommand<'_>, surplus: Span) -> (String, Fix) {
     let whole = command.source.slice(command.args[0].span.to(surplus)).trim_matches(FALSE_QUOTES);
     let first = unquoted(command.source, command.args[0].span);
     if !is_png(first) && is_png(whole) && !whole.contains('"') {
-        return format!("put a name with blanks in double quotes: {}", quoted(&format!("\"{whole}\"")));
+        let repair = format!("\"{whole}\"");
+        let help = format!("put a name with blanks in double quotes: {}", quoted(&repair));
+        return (help, Fix::write(Safety::Unsafe, command.args[0].span.to(surplus), repair));
     }
-    format!("remove {}; the size of an image is not part of a scene", quoted(command.source.slice(surplus)))
+    let help = format!("remove {}; the size of an image is not part of a scene", quoted(command.source.slice(surplus)));
+    (help, command.without_surplus(surplus))
 }

@@ -1,7 +1,7 @@
 //! What is wrong with the text of a source before any of it is a command.
 
 use crate::diag::words::counted;
-use crate::diag::{Diagnostic, codes};
+use crate::diag::{Diagnostic, Edit, Fix, Safety, codes};
 use crate::source::{Encoding, Source, Span};
 use crate::syntax::token::{Token, TokenKind};
 
@@ -74,11 +74,15 @@ pub(super) fn check_foreign(source: &Source, foreign: &[Token], acc: &mut Vec<Di
     for kind in [TokenKind::Control, TokenKind::ForeignBlank] {
         let mut places = foreign.iter().filter(|token| token.kind == kind).map(|token| token.span);
         if let Some(first) = places.by_ref().find(|&span| !is_invalid(span)) {
-            let diagnostic = match kind {
-                TokenKind::Control => control(source, first),
-                _ => foreign_blank(source, first),
+            let others: Vec<_> = places.filter(|&span| !is_invalid(span)).collect();
+            let (diagnostic, safety) = match kind {
+                TokenKind::Control => (control(source, first), Safety::Unsafe),
+                _ => (foreign_blank(source, first), Safety::Safe),
             };
-            acc.push(with_places(diagnostic, places.filter(|&span| !is_invalid(span))));
+            let edits = std::iter::once(first).chain(others.iter().copied());
+            let edits = edits.map(|span| Edit::replace(span, stand_in(source.slice(span)))).collect();
+            let fix = Fix { title: diagnostic.help.clone().unwrap_or_default(), edits, safety };
+            acc.push(with_places(diagnostic.fix(fix), others.into_iter()));
         }
     }
 }
@@ -111,12 +115,33 @@ fn foreign_blank(source: &Source, span: Span) -> Diagnostic {
         _ => "Unicode blank",
     };
     let message = format!("a {name} (U+{:04X}) where only a space or a tab may stand", u32::from(first));
-    let has_no_width = matches!(first, '\u{180E}' | '\u{200B}' | '\u{2060}' | '\u{FEFF}');
-    let (label, help) = match has_no_width {
+    let (label, help) = match has_no_width(first) {
         true => ("does not show on a screen", "remove it"),
         false => ("looks like a space, but is none", "write a space in its place"),
     };
     Diagnostic::new(&codes::FOREIGN_CHARACTER, span, message).label(label).help(help)
+}
+
+/// Tells whether a foreign character takes no room on a screen.
+fn has_no_width(character: char) -> bool {
+    matches!(character, '\u{180E}' | '\u{200B}' | '\u{2060}' | '\u{FEFF}') || character.is_control()
+}
+
+/// Returns what to write instead of foreign characters: as many spaces as were seen.
+fn stand_in(foreign: &str) -> String {
+    foreign.chars().filter(|&character| !has_no_width(character)).map(|_| ' ').collect()
+}
+
+/// Returns the fix that ends lines with LF where a carriage return stands alone, the first of them at `first`; none when
+/// there are more of them than an editor takes well.
+fn lone_returns_replaced(source: &Source, first: u32) -> Option<Fix> {
+    const MAX_EDITS: usize = 10_000;
+    let bytes = source.text().as_bytes();
+    let returns = memchr::memchr_iter(b'\r', &bytes[first as usize..]).map(|at| at + first as usize);
+    let lone = returns.filter(|&at| bytes.get(at + 1) != Some(&b'\n'));
+    let edits: Vec<_> =
+        lone.take(MAX_EDITS + 1).map(|at| Edit::replace(Span::new(at as u32, at as u32 + 1), "\n")).collect();
+    (edits.len() <= MAX_EDITS).then(|| Fix::safe("end these lines with LF", edits))
 }
 
 /// The carriage returns that no line feed follows.
@@ -138,7 +163,7 @@ impl LoneReturns {
     }
 
     /// Reports them once for all: it is one mistake to save a file with such line ends.
-    pub(super) fn diagnose(self) -> Option<Diagnostic> {
+    pub(super) fn diagnose(self, source: &Source) -> Option<Diagnostic> {
         let more = match self.n {
             0 | 1 => String::new(),
             n => format!(" ({} in the file)", counted(n, "time")),
@@ -148,6 +173,7 @@ impl LoneReturns {
             Diagnostic::new(&codes::FOREIGN_CHARACTER, first, message)
                 .label("ends no line")
                 .help("save the file with LF or CRLF line ends")
+                .fix(lone_returns_replaced(source, first.start))
         })
     }
 }
