@@ -7,7 +7,9 @@ use std::fs;
 use std::panic::{self, AssertUnwindSafe};
 use std::path::Path;
 
-use clisc::testing::{assert_compiles_soundly, assert_parse_is_stable, assert_renders_soundly, assert_tokens_tile};
+use clisc::testing::{
+    assert_compiles_soundly, assert_formats_soundly, assert_parse_is_stable, assert_renders_soundly, assert_tokens_tile,
+};
 
 /// The folders that `fuzz/run` reads.
 const FOLDERS: [&str; 3] = ["fuzz/seeds", "scenes", "tests/fixtures"];
@@ -40,6 +42,11 @@ fn parse_target_accepts_the_corpus() {
 #[test]
 fn check_target_accepts_the_corpus() {
     check_on_all(assert_compiles_soundly);
+}
+
+#[test]
+fn format_target_accepts_the_corpus() {
+    check_on_all(assert_formats_soundly);
 }
 
 #[test]

@@ -20,7 +20,11 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("plan", &["ir", "math", "source"]),
     ("trace", &["ir", "plan", "math", "image"]),
     ("exec", &["ir", "plan", "trace", "image", "diag"]),
-    ("testing", &["source", "diag", "math", "image", "syntax", "ir", "lower", "compile", "plan", "trace", "exec"]),
+    ("format", &["source", "syntax", "lower", "exec"]),
+    (
+        "testing",
+        &["source", "diag", "math", "image", "syntax", "ir", "lower", "compile", "plan", "trace", "exec", "format"],
+    ),
 ];
 
 fn root() -> &'static Path {

@@ -102,6 +102,19 @@ pub struct ArgSpec {
     pub doc: &'static str,
 }
 
+/// Numbers of one command, side by side, that mean one thing together. Formatting sets them apart from the next group.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Group {
+    /// What formulas and editors call it, in one short word.
+    pub symbol: &'static str,
+    /// What it is, in words.
+    pub name: &'static str,
+    /// How many numbers it has.
+    pub n_numbers: usize,
+    /// Whether they are red, green and blue.
+    pub is_color: bool,
+}
+
 /// What follows the name of a command.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Arguments {
@@ -120,6 +133,8 @@ pub struct CommandSpec {
     pub name: &'static str,
     /// What follows the name.
     pub arguments: Arguments,
+    /// The numbers by meaning, from the first to the last.
+    pub groups: &'static [Group],
     /// Two numbers, by index, of which the first must be below the second.
     pub rising: Option<(usize, usize)>,
     /// What it does, a sentence.
@@ -136,6 +151,16 @@ impl CommandSpec {
             Arguments::Numbers(args) => args,
             Arguments::FileName(_) => &[],
         }
+    }
+
+    /// Returns the groups of its numbers, each with the indices of those it has.
+    pub fn grouped(&self) -> impl DoubleEndedIterator<Item = (std::ops::Range<usize>, &'static Group)> + use<> {
+        let end_of = |i: usize, groups: &[Group]| groups[..=i].iter().map(|group| group.n_numbers).sum::<usize>();
+        let groups = self.groups;
+        groups.iter().enumerate().map(move |(i, group)| {
+            let end = end_of(i, groups);
+            (end - group.n_numbers..end, group)
+        })
     }
 
     /// Returns the names of the arguments.
@@ -185,6 +210,14 @@ const fn share(name: &'static str, doc: &'static str) -> ArgSpec {
     ArgSpec { name, unit: Unit::Share, range: Range::UsuallyUnit, doc }
 }
 
+const fn group(symbol: &'static str, name: &'static str, n_numbers: usize) -> Group {
+    Group { symbol, name, n_numbers, is_color: false }
+}
+
+const fn color(symbol: &'static str, name: &'static str) -> Group {
+    Group { symbol, name, n_numbers: 3, is_color: true }
+}
+
 const RADIUS: ArgSpec = ArgSpec { name: "radius", unit: Unit::World, range: Range::Positive, doc: "the radius" };
 
 /// Every command, in the order of [`CommandKind`].
@@ -198,6 +231,7 @@ pub static COMMANDS: [CommandSpec; 7] = [
             range: Range::PositiveBelow(180.0),
             doc: "from the lower to the upper edge of the image",
         }]),
+        groups: &[group("angle", "the angle of view", 1)],
         rising: None,
         doc: "Sets the vertical field of view.",
         example: "fov 60",
@@ -206,6 +240,7 @@ pub static COMMANDS: [CommandSpec; 7] = [
         kind: CommandKind::Background,
         name: "background",
         arguments: Arguments::Numbers(&[share("r", "red"), share("g", "green"), share("b", "blue")]),
+        groups: &[color("rgb", "the colour")],
         rising: None,
         doc: "Sets the colour of a ray that meets nothing; black until set.",
         example: "background 0.2 0.3 0.5",
@@ -221,9 +256,10 @@ pub static COMMANDS: [CommandSpec; 7] = [
             world("y", "up"),
             world("z", "towards the viewer"),
         ]),
+        groups: &[color("Cl", "the colour"), group("position", "the position", 3)],
         rising: None,
         doc: "Adds a point light: its colour, then its position.",
-        example: "light 1 1 1  0 0 5",
+        example: "light 1 1 1   0 0 5",
     },
     CommandSpec {
         kind: CommandKind::Surface,
@@ -241,9 +277,16 @@ pub static COMMANDS: [CommandSpec; 7] = [
             ArgSpec { name: "P", unit: Unit::Exponent, range: Range::NotNegative, doc: "the shininess" },
             share("Krefl", "the weight of the mirror image"),
         ]),
+        groups: &[
+            color("Ca", "the ambient colour"),
+            color("Cd", "the diffuse colour"),
+            color("Cs", "the specular colour"),
+            group("P", "the shininess", 1),
+            group("Krefl", "the reflectance", 1),
+        ],
         rising: None,
         doc: "Sets the surface of the objects that follow.",
-        example: "surface 0.1 0 0  0.8 0.2 0.2  0.5 0.5 0.5  20  0.3",
+        example: "surface 0.1 0 0   0.8 0.2 0.2   0.5 0.5 0.5   20   0.3",
     },
     CommandSpec {
         kind: CommandKind::Sphere,
@@ -254,9 +297,10 @@ pub static COMMANDS: [CommandSpec; 7] = [
             world("z", "the centre, towards the viewer"),
             RADIUS,
         ]),
+        groups: &[group("centre", "the centre", 3), group("radius", "the radius", 1)],
         rising: None,
         doc: "Adds a sphere.",
-        example: "sphere 0 0 -4  1",
+        example: "sphere 0 0 -4   1",
     },
     CommandSpec {
         kind: CommandKind::Cylinder,
@@ -268,9 +312,14 @@ pub static COMMANDS: [CommandSpec; 7] = [
             world("ymin", "the height of the lower cap"),
             world("ymax", "the height of the upper cap, above ymin"),
         ]),
+        groups: &[
+            group("radius", "the radius", 1),
+            group("axis", "the place of the axis", 2),
+            group("heights", "the heights of the caps", 2),
+        ],
         rising: Some((3, 4)),
         doc: "Adds a closed vertical cylinder.",
-        example: "cylinder 0.5  0 -4  -1 1",
+        example: "cylinder 0.5   0 -4   -1 1",
     },
     CommandSpec {
         kind: CommandKind::Write,
@@ -281,6 +330,7 @@ pub static COMMANDS: [CommandSpec; 7] = [
             range: Range::Any,
             doc: "the image, below the output folder",
         }),
+        groups: &[],
         rising: None,
         doc: "Renders the scene as it now stands and saves the image.",
         example: "write picture.png",
@@ -297,6 +347,11 @@ mod tests {
             assert_eq!(command.kind as usize, i);
             assert!(std::ptr::eq(command.kind.spec(), command));
             assert!(command.numbers().len() <= MAX_NUMBERS);
+            let grouped: Vec<usize> = command.grouped().flat_map(|(numbers, _)| numbers).collect();
+            assert_eq!(grouped, Vec::from_iter(0..command.numbers().len()), "the groups of {}", command.name);
+            for (numbers, group) in command.grouped() {
+                assert!(!group.is_color || command.numbers()[numbers].iter().all(|arg| arg.unit == Unit::Share));
+            }
         }
     }
 }

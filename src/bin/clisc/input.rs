@@ -1,8 +1,9 @@
-//! Reading scenes.
+//! Finding and reading scenes.
 
-use std::fs::File;
+use std::ffi::OsStr;
+use std::fs::{self, File};
 use std::io::{self, Read};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use clisc::source::{Source, SourceError};
@@ -19,7 +20,7 @@ const TOO_LARGE: u64 = u32::MAX as u64;
 /// # Errors
 /// When it cannot be read or is too large for a scene; the message names it.
 pub fn read(path: &Path) -> anyhow::Result<Source> {
-    if path == Path::new("-") {
+    if is_stdin(path) {
         let mut bytes = Vec::new();
         io::stdin().lock().take(TOO_LARGE).read_to_end(&mut bytes).context("cannot read standard input")?;
         return Ok(Source::from_bytes(STDIN_NAME, bytes)?);
@@ -27,6 +28,52 @@ pub fn read(path: &Path) -> anyhow::Result<Source> {
     let name = path.display();
     let read = || anyhow::Ok(Source::from_bytes(name.to_string(), read_file(path)?)?);
     read().with_context(|| format!("cannot read `{name}`"))
+}
+
+/// Tells whether an argument means standard input.
+pub fn is_stdin(path: &Path) -> bool {
+    path == Path::new("-")
+}
+
+/// Returns the scenes that an argument means: itself, or every `.cli` file below the folder it names, as far as that can
+/// be read. Says what could not be.
+pub fn find_scenes(path: &Path) -> (Vec<PathBuf>, Vec<anyhow::Error>) {
+    if !path.is_dir() {
+        return (vec![path.to_owned()], Vec::new());
+    }
+    let (mut scenes, mut missed) = (Vec::new(), Vec::new());
+    walk(path, &mut scenes, &mut missed);
+    if scenes.is_empty() && missed.is_empty() {
+        missed.push(anyhow::anyhow!("there is no .cli file below `{}`", path.display()));
+    }
+    (scenes, missed)
+}
+
+/// Appends the scenes below a folder, sorted by name, and the folders that cannot be read; links to folders are not
+/// followed.
+fn walk(folder: &Path, scenes: &mut Vec<PathBuf>, missed: &mut Vec<anyhow::Error>) {
+    match list(folder) {
+        Ok(entries) => entries.into_iter().for_each(|(path, is_folder)| {
+            if is_folder {
+                walk(&path, scenes, missed);
+            } else if path.extension() == Some(OsStr::new("cli")) {
+                scenes.push(path);
+            }
+        }),
+        Err(error) => {
+            let message = format!("cannot read the folder `{}`", folder.display());
+            missed.push(anyhow::Error::from(error).context(message));
+        }
+    }
+}
+
+/// Returns what is in a folder, sorted by name, and whether it is a folder itself.
+fn list(folder: &Path) -> io::Result<Vec<(PathBuf, bool)>> {
+    let entries =
+        fs::read_dir(folder)?.map(|entry| entry.and_then(|entry| Ok((entry.path(), entry.file_type()?.is_dir()))));
+    let mut entries = entries.collect::<Result<Vec<_>, _>>()?;
+    entries.sort();
+    Ok(entries)
 }
 
 fn read_file(path: &Path) -> anyhow::Result<Vec<u8>> {

@@ -4,6 +4,7 @@
 
 mod args;
 mod commands;
+mod diff;
 mod disk;
 mod input;
 mod interrupt;
@@ -31,6 +32,7 @@ fn run(cli: &Cli) -> anyhow::Result<ExitCode> {
         Command::Check(args) => commands::check::run(args),
         Command::Run(args) => commands::run::run(args),
         Command::Ir(args) => commands::ir::run(args),
+        Command::Fmt(args) => commands::fmt::run(args),
         Command::Explain(args) => commands::explain::run(args),
     }
 }

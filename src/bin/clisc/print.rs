@@ -11,6 +11,9 @@ use clisc::diag::render::harmless;
 use clisc::diag::words::counted;
 use clisc::source::Source;
 
+/// What it means when results cannot be written.
+pub const CANNOT_WRITE: &str = "cannot write to standard output";
+
 /// Returns standard output, buffered, for results of any length; it has to be flushed.
 pub fn stdout() -> impl Write {
     BufWriter::new(Patient(io::stdout().lock()))
@@ -27,7 +30,7 @@ pub fn stderr() -> impl Write {
 /// When they cannot be written, except that nobody reads them any more.
 pub fn to_stdout(text: &str) -> anyhow::Result<()> {
     let mut stdout = Patient(io::stdout().lock());
-    stdout.write_all(harmless(text).as_bytes()).and_then(|()| stdout.flush()).context("cannot write to standard output")
+    stdout.write_all(harmless(text).as_bytes()).and_then(|()| stdout.flush()).context(CANNOT_WRITE)
 }
 
 /// Prints messages to standard error. There is no place left to say that this failed.

@@ -2,6 +2,7 @@
 
 mod check;
 mod explain;
+mod fmt;
 mod image;
 mod ir;
 mod run;
@@ -10,6 +11,7 @@ use clap::{Parser, Subcommand};
 
 pub use check::{CheckArgs, CheckFormat};
 pub use explain::ExplainArgs;
+pub use fmt::FmtArgs;
 pub use image::ImageArgs;
 pub use ir::{DumpFormat, Emit, IrArgs};
 pub use run::{RunArgs, StatsFormat};
@@ -27,6 +29,7 @@ const CLI_EXAMPLES: &str = "\
 Examples:
   clisc check scenes               say what is wrong with the scenes below a folder
   clisc run i1.cli                 render i1.cli and save its images here
+  clisc fmt scenes                 bring the scenes below a folder into their canonical form
   clisc ir i1.cli --emit commands  show what i1.cli was compiled to
   clisc explain E0203              explain a code that a message showed
 
@@ -41,6 +44,8 @@ pub enum Command {
     Run(RunArgs),
     /// Shows what a scene becomes at a stage of the compiler.
     Ir(IrArgs),
+    /// Brings scenes into their canonical form.
+    Fmt(FmtArgs),
     /// Explains a code, with a failing scene and its repair.
     Explain(ExplainArgs),
 }

@@ -1,9 +1,7 @@
 //! `clisc check`.
 
-use std::ffi::OsStr;
-use std::fs;
-use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::io::Write;
+use std::path::Path;
 use std::process::ExitCode;
 
 use anyhow::Context;
@@ -24,7 +22,7 @@ pub fn run(args: &CheckArgs) -> anyhow::Result<ExitCode> {
     let mut printer = Printer::new(args.format)?;
     let mut tally = Tally::default();
     for path in &args.paths {
-        let (scenes, missed) = find_scenes(path);
+        let (scenes, missed) = input::find_scenes(path);
         missed.iter().for_each(|error| tally.miss(error));
         scenes.iter().try_for_each(|scene| check(scene, &mut printer, &mut tally))?;
     }
@@ -46,47 +44,6 @@ fn check(path: &Path, printer: &mut Printer, tally: &mut Tally) -> anyhow::Resul
         Err(error) => tally.miss(&error),
     }
     Ok(())
-}
-
-/// Returns the scenes that an argument means: itself, or every `.cli` file below the folder it names, as far as that can
-/// be read. Says what could not be.
-fn find_scenes(path: &Path) -> (Vec<PathBuf>, Vec<anyhow::Error>) {
-    if !path.is_dir() {
-        return (vec![path.to_owned()], Vec::new());
-    }
-    let (mut scenes, mut missed) = (Vec::new(), Vec::new());
-    walk(path, &mut scenes, &mut missed);
-    if scenes.is_empty() && missed.is_empty() {
-        missed.push(anyhow::anyhow!("there is no .cli file below `{}`", path.display()));
-    }
-    (scenes, missed)
-}
-
-/// Appends the scenes below a folder, sorted by name, and the folders that cannot be read; links to folders are not
-/// followed.
-fn walk(folder: &Path, scenes: &mut Vec<PathBuf>, missed: &mut Vec<anyhow::Error>) {
-    match list(folder) {
-        Ok(entries) => entries.into_iter().for_each(|(path, is_folder)| {
-            if is_folder {
-                walk(&path, scenes, missed);
-            } else if path.extension() == Some(OsStr::new("cli")) {
-                scenes.push(path);
-            }
-        }),
-        Err(error) => {
-            let message = format!("cannot read the folder `{}`", folder.display());
-            missed.push(anyhow::Error::from(error).context(message));
-        }
-    }
-}
-
-/// Returns what is in a folder, sorted by name, and whether it is a folder itself.
-fn list(folder: &Path) -> io::Result<Vec<(PathBuf, bool)>> {
-    let entries =
-        fs::read_dir(folder)?.map(|entry| entry.and_then(|entry| Ok((entry.path(), entry.file_type()?.is_dir()))));
-    let mut entries = entries.collect::<Result<Vec<_>, _>>()?;
-    entries.sort();
-    Ok(entries)
 }
 
 /// What has been found so far.
@@ -133,8 +90,6 @@ enum Printer {
     Json(JsonReport<Box<dyn Write>>),
 }
 
-const CANNOT_WRITE: &str = "cannot write to standard output";
-
 impl Printer {
     fn new(format: CheckFormat) -> anyhow::Result<Self> {
         Ok(match format {
@@ -143,7 +98,7 @@ impl Printer {
             CheckFormat::Short => Self::Short,
             CheckFormat::Json => {
                 let out: Box<dyn Write> = Box::new(print::stdout());
-                Self::Json(JsonReport::begin(out).context(CANNOT_WRITE)?)
+                Self::Json(JsonReport::begin(out).context(print::CANNOT_WRITE)?)
             }
         })
     }
@@ -161,12 +116,12 @@ impl Printer {
                 report.add(source, diagnostics)
             }
         };
-        written.and_then(|()| out.flush()).context(CANNOT_WRITE)
+        written.and_then(|()| out.flush()).context(print::CANNOT_WRITE)
     }
 
     fn finish(self) -> anyhow::Result<()> {
         if let Self::Json(report) = self {
-            report.finish().and_then(|mut out| out.flush()).context(CANNOT_WRITE)?;
+            report.finish().and_then(|mut out| out.flush()).context(print::CANNOT_WRITE)?;
         }
         Ok(())
     }

@@ -28,9 +28,7 @@ pub fn run(args: &IrArgs) -> anyhow::Result<ExitCode> {
     drop(stderr);
     print::unlisted_to_stderr(&source, &compilation);
     let mut out = print::stdout();
-    dump(args, &source, compilation, &mut out)?
-        .and_then(|()| out.flush())
-        .context("cannot write to standard output")?;
+    dump(args, &source, compilation, &mut out)?.and_then(|()| out.flush()).context(print::CANNOT_WRITE)?;
     Ok(if has_errors { Outcome::SceneErrors } else { Outcome::Fine }.into())
 }
 

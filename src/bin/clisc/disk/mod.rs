@@ -1,7 +1,8 @@
-//! The sink that saves images as files below one folder.
+//! Saving files, each as a whole or not at all: images below one folder, scenes in place of themselves.
 
 mod links;
 mod pending;
+mod replace;
 
 use std::fs;
 use std::io::{self, Write};
@@ -11,6 +12,8 @@ use clisc::exec::{ImageRequest, Refusal, Sink, SinkError, Step};
 
 use self::links::{follow_links, follow_links_below};
 use self::pending::PendingFile;
+
+pub use self::replace::replace;
 
 /// Saves images below a folder, which is made when it is missing. An image is there as a whole or not at all.
 #[derive(Debug)]

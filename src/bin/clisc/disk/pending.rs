@@ -1,6 +1,6 @@
 //! A file that nobody sees until it is whole.
 
-use std::fs::File;
+use std::fs::{File, Metadata};
 use std::io::{self, Write};
 use std::path::Path;
 
@@ -50,6 +50,20 @@ impl PendingFile {
                 file.persist(target).map(drop).map_err(|failed| failed.error)
             }
         }
+    }
+
+    /// Gives the file the rights of another, and its owner as far as the system allows.
+    pub fn take_after(&self, other: &Metadata) -> io::Result<()> {
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::{MetadataExt, fchown};
+            let own = self.file().metadata()?;
+            if (own.uid(), own.gid()) != (other.uid(), other.gid()) {
+                // Few may give files away; whoever may not keeps the file.
+                let _ = fchown(self.file(), Some(other.uid()), Some(other.gid()));
+            }
+        }
+        self.file().set_permissions(other.permissions())
     }
 
     fn file(&self) -> &File {

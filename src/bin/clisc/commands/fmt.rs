@@ -1,0 +1,133 @@
+//! `clisc fmt`.
+
+use std::collections::HashSet;
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::Context;
+use clisc::diag::words::counted;
+use clisc::format::{changes, format};
+use clisc::source::Source;
+use rayon::prelude::*;
+
+use crate::args::FmtArgs;
+use crate::diff::Diff;
+use crate::outcome::Outcome;
+use crate::{disk, input, print};
+
+/// How many scenes are in memory at a time.
+const BATCH: usize = 32;
+
+/// Formats scenes, on all cores and told of in the order given. A scene that cannot be read or saved does not keep the
+/// others from being formatted.
+pub fn run(args: &FmtArgs) -> anyhow::Result<ExitCode> {
+    let mut tally = Tally::default();
+    let scenes = scenes_of(&args.paths, &mut tally);
+    for batch in scenes.chunks(BATCH) {
+        let results: Vec<_> = batch.par_iter().map(|path| format_scene(path, args)).collect();
+        for (path, result) in batch.iter().zip(results) {
+            match result {
+                Ok(scene) => {
+                    scene.show(path, args)?;
+                    tally.add(&scene);
+                }
+                Err(error) => tally.miss(&error),
+            }
+        }
+    }
+    if scenes.iter().any(|path| !input::is_stdin(path)) {
+        print::to_stderr(&tally.summary(args));
+    }
+    Ok(tally.outcome(args).into())
+}
+
+/// Returns the scenes that the arguments mean, each once.
+fn scenes_of(paths: &[PathBuf], tally: &mut Tally) -> Vec<PathBuf> {
+    let mut seen = HashSet::new();
+    let mut scenes = Vec::new();
+    for path in paths {
+        let (found, missed) = input::find_scenes(path);
+        missed.iter().for_each(|error| tally.miss(error));
+        let is_new = |path: &PathBuf| seen.insert(fs::canonicalize(path).unwrap_or_else(|_| path.clone()));
+        scenes.extend(found.into_iter().filter(is_new));
+    }
+    scenes
+}
+
+/// A scene that has been formatted.
+struct Scene {
+    source: Source,
+    /// Its canonical form, where that is another or is asked for.
+    formatted: Vec<u8>,
+    has_changed: bool,
+}
+
+/// Formats a scene, and saves it unless it is only to be looked at.
+fn format_scene(path: &Path, args: &FmtArgs) -> anyhow::Result<Scene> {
+    let source = input::read(path)?;
+    let formatted = format(&source);
+    let has_changed = *formatted != *source.original_bytes();
+    let is_saved = has_changed && !args.check && !args.diff && !input::is_stdin(path);
+    if is_saved {
+        let save = || disk::replace(path, &source.original_bytes(), &formatted);
+        save().with_context(|| format!("cannot save `{}`", path.display()))?;
+    }
+    Ok(Scene { source, formatted, has_changed })
+}
+
+impl Scene {
+    /// Prints what is asked for: the name of a scene that would change, the changes, the text of standard input.
+    fn show(&self, path: &Path, args: &FmtArgs) -> anyhow::Result<()> {
+        if input::is_stdin(path) && !args.check && !args.diff {
+            let mut out = print::stdout();
+            return out.write_all(&self.formatted).and_then(|()| out.flush()).context(print::CANNOT_WRITE);
+        }
+        if args.diff && self.has_changed {
+            let mut out = print::stdout();
+            let old = self.source.original_bytes();
+            let diff = Diff::of_changes(&self.source, &changes(&self.source), &old, &self.formatted);
+            return diff.write(self.source.name(), &mut out).and_then(|()| out.flush()).context(print::CANNOT_WRITE);
+        }
+        if args.check && self.has_changed {
+            return print::to_stdout(&format!("{}\n", self.source.name()));
+        }
+        Ok(())
+    }
+}
+
+/// What has been done so far.
+#[derive(Debug, Default)]
+struct Tally {
+    n_scenes: usize,
+    n_changed: usize,
+    has_missed: bool,
+}
+
+impl Tally {
+    fn add(&mut self, scene: &Scene) {
+        self.n_scenes += 1;
+        self.n_changed += usize::from(scene.has_changed);
+    }
+
+    /// Tells of a scene that could not be read or saved.
+    fn miss(&mut self, error: &anyhow::Error) {
+        self.has_missed = true;
+        print::to_stderr(&format!("error: {error:#}\n"));
+    }
+
+    fn summary(&self, args: &FmtArgs) -> String {
+        let verb = if args.check || args.diff { "to be formatted" } else { "formatted" };
+        let rest = self.n_scenes - self.n_changed;
+        format!("{} {verb}, {rest} unchanged\n", counted(self.n_changed, "scene"))
+    }
+
+    fn outcome(&self, args: &FmtArgs) -> Outcome {
+        match (self.has_missed, args.check && self.n_changed > 0) {
+            (true, _) => Outcome::Environment,
+            (false, true) => Outcome::SceneErrors,
+            (false, false) => Outcome::Fine,
+        }
+    }
+}

@@ -1,0 +1,115 @@
+//! Unified diffs, as `patch` reads them.
+
+use std::io::{self, Write};
+
+use clisc::format::Piece;
+use clisc::source::Source;
+use similar::{ChangeTag, DiffOp, group_diff_ops};
+
+/// How many lines around a change are shown.
+const CONTEXT: usize = 3;
+
+/// What has changed between two texts.
+#[derive(Debug)]
+pub struct Diff<'t> {
+    old: Vec<&'t [u8]>,
+    new: Vec<&'t [u8]>,
+    ops: Vec<DiffOp>,
+}
+
+impl<'t> Diff<'t> {
+    /// Makes the diff of a text in which `changes` have been carried out: there is nothing to search for, so that it takes
+    /// no longer where everything has changed. `old` are the bytes of `source`.
+    pub fn of_changes(source: &Source, changes: &[Piece<'_>], old: &'t [u8], new: &'t [u8]) -> Self {
+        let (old, new) = (lines_of(old), lines_of(new));
+        let mut ops = Vec::new();
+        let (mut old_index, mut new_index) = (0, 0);
+        for change in changes {
+            let start = source.lines().line_of(change.old.start);
+            push_equal(&mut ops, &mut old_index, &mut new_index, start);
+            let (old_len, new_len) = (lines_of(source.slice(change.old).as_bytes()).len(), lines_of(&change.new).len());
+            push_replace(&mut ops, DiffOp::Replace { old_index, old_len, new_index, new_len });
+            (old_index, new_index) = (old_index + old_len, new_index + new_len);
+        }
+        push_equal(&mut ops, &mut old_index, &mut new_index, old.len());
+        Self { old, new, ops }
+    }
+
+    /// Writes the diff; nothing when nothing has changed.
+    pub fn write(&self, name: &str, out: &mut dyn Write) -> io::Result<()> {
+        let hunks = group_diff_ops(self.ops.clone(), CONTEXT);
+        if hunks.is_empty() {
+            return Ok(());
+        }
+        write!(out, "--- {name}\n+++ {name}\n")?;
+        for hunk in hunks {
+            let (Some(first), Some(last)) = (hunk.first(), hunk.last()) else { continue };
+            let old = Extent { start: first.old_range().start, end: last.old_range().end };
+            let new = Extent { start: first.new_range().start, end: last.new_range().end };
+            writeln!(out, "@@ -{old} +{new} @@")?;
+            for op in &hunk {
+                self.write_op(op, out)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn write_op(&self, op: &DiffOp, out: &mut dyn Write) -> io::Result<()> {
+        for change in op.iter_changes(&self.old, &self.new) {
+            let line: &[u8] = change.value();
+            let sign = match change.tag() {
+                ChangeTag::Equal => b" ",
+                ChangeTag::Delete => b"-",
+                ChangeTag::Insert => b"+",
+            };
+            out.write_all(sign)?;
+            out.write_all(line)?;
+            if !line.ends_with(b"\n") {
+                out.write_all(b"\n\\ No newline at end of file\n")?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Adds the lines up to line `old_end` of the old text, which have not changed.
+fn push_equal(ops: &mut Vec<DiffOp>, old_index: &mut usize, new_index: &mut usize, old_end: usize) {
+    let len = old_end - *old_index;
+    if len > 0 {
+        ops.push(DiffOp::Equal { old_index: *old_index, new_index: *new_index, len });
+        (*old_index, *new_index) = (*old_index + len, *new_index + len);
+    }
+}
+
+/// Adds lines that have changed; one change with those just before.
+fn push_replace(ops: &mut Vec<DiffOp>, next: DiffOp) {
+    match (ops.last_mut(), next) {
+        (Some(DiffOp::Replace { old_len, new_len, .. }), DiffOp::Replace { old_len: n_old, new_len: n_new, .. }) => {
+            *old_len += n_old;
+            *new_len += n_new;
+        }
+        _ => ops.push(next),
+    }
+}
+
+/// Returns the lines of a text, with their ends.
+fn lines_of(text: &[u8]) -> Vec<&[u8]> {
+    text.split_inclusive(|&byte| byte == b'\n').collect()
+}
+
+/// The lines of a hunk, as its head tells them.
+struct Extent {
+    start: usize,
+    end: usize,
+}
+
+impl std::fmt::Display for Extent {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self.end - self.start {
+            // Nothing lies behind the line that is named.
+            0 => write!(f, "{},0", self.start),
+            1 => write!(f, "{}", self.start + 1),
+            n => write!(f, "{},{n}", self.start + 1),
+        }
+    }
+}

@@ -1,0 +1,125 @@
+//! `clisc fmt` as one calls it: exit codes, streams, files.
+
+mod support;
+
+use crate::support::Folder;
+
+const LOOSE: &str = "  fov 60 # wide\nbackground .1 0 0\n\n\nwrite a.png";
+const TIDY: &str = "fov        60  # wide\nbackground 0.1 0 0\n\nwrite a.png\n";
+
+#[test]
+fn scenes_are_formatted_in_place() {
+    let folder = Folder::with_scene(LOOSE);
+    folder.put("b/tidy.cli", TIDY);
+    folder.put("b/notes.txt", LOOSE);
+    let call = folder.clisc(&["fmt", "."]);
+    assert_eq!((call.code, call.stdout.as_str()), (Some(0), ""));
+    assert_eq!(call.stderr, "1 scene formatted, 1 unchanged\n");
+    assert_eq!((folder.bytes("a.cli"), folder.bytes("b/notes.txt")), (TIDY.into(), LOOSE.into()));
+    assert_eq!(folder.listing(), ["a.cli", "b/", "b/notes.txt", "b/tidy.cli"]);
+    assert_eq!(folder.clisc(&["fmt", "a.cli", "./a.cli"]).stderr, "no scene formatted, 1 unchanged\n");
+}
+
+#[test]
+fn check_lists_and_saves_nothing() {
+    let folder = Folder::with_scene(LOOSE);
+    folder.put("b.cli", TIDY);
+    folder.put("c.cli", LOOSE);
+    let call = folder.clisc(&["fmt", "--check", "c.cli", "a.cli", "b.cli"]);
+    assert_eq!((call.code, call.stdout.as_str()), (Some(1), "c.cli\na.cli\n"));
+    assert_eq!(call.stderr, "2 scenes to be formatted, 1 unchanged\n");
+    assert_eq!(folder.bytes("a.cli"), LOOSE.as_bytes());
+    assert_eq!(folder.clisc(&["fmt", "--check", "b.cli"]).code, Some(0));
+}
+
+#[test]
+fn diff_is_a_patch() {
+    let folder = Folder::with_scene(LOOSE);
+    let call = folder.clisc(&["fmt", "--diff", "a.cli"]);
+    assert_eq!(call.code, Some(0));
+    assert_eq!(
+        call.stdout,
+        "--- a.cli\n+++ a.cli\n@@ -1,5 +1,4 @@\n-  fov 60 # wide\n-background .1 0 0\n-\n-\n-write a.png\n\\ No newline at end \
+         of file\n+fov        60  # wide\n+background 0.1 0 0\n+\n+write a.png\n"
+    );
+    assert_eq!(folder.clisc(&["fmt", "--diff", "--check", "a.cli"]).code, Some(1));
+    assert_eq!(folder.bytes("a.cli"), LOOSE.as_bytes());
+}
+
+/// Blank lines that go away at both ends and in the middle, changes far apart and side by side.
+#[test]
+fn a_diff_has_hunks_with_three_lines_around() {
+    let comments = |n: usize| (0..n).map(|i| format!("# {i}\n")).collect::<String>();
+    let folder =
+        Folder::with_scene(&format!("\n{}fov  60\n{} fov 50\n\n\n{}\n", comments(8), comments(7), comments(2)));
+    let call = folder.clisc(&["fmt", "--diff", "a.cli"]);
+    let heads: Vec<_> = call.stdout.lines().filter(|line| line.starts_with("@@")).collect();
+    assert_eq!(heads, ["@@ -1,4 +1,3 @@", "@@ -7,7 +6,7 @@", "@@ -15,9 +14,7 @@"], "{}", call.stdout);
+    assert!(call.stdout.contains("\n- fov 50\n-\n-\n+fov 50\n+\n # 0\n"), "{}", call.stdout);
+}
+
+#[test]
+fn standard_input_goes_to_standard_output() {
+    let folder = Folder::new();
+    let format = |args: &[&str], text: &str| {
+        let output = folder.command(args).write_stdin(text).output().expect("a call");
+        crate::support::Call::from(output)
+    };
+    for text in [LOOSE, TIDY] {
+        let call = format(&["fmt", "-"], text);
+        assert_eq!((call.code, call.stdout.as_str(), call.stderr.as_str()), (Some(0), TIDY, ""));
+    }
+    let call = format(&["fmt", "-", "--check"], LOOSE);
+    assert_eq!((call.code, call.stdout.as_str()), (Some(1), "<stdin>\n"));
+    let call = format(&["fmt", "-"], "fvo  60\n fov 60");
+    assert_eq!((call.code, call.stdout.as_str()), (Some(0), "fvo  60\nfov 60\n"), "a line with an error stays");
+}
+
+#[test]
+fn what_cannot_be_read_is_2_and_the_others_are_formatted() {
+    let folder = Folder::with_scene(LOOSE);
+    let call = folder.clisc(&["fmt", "missing.cli", "a.cli"]);
+    assert_eq!(call.code, Some(2));
+    assert!(call.stderr.starts_with("error: cannot read `missing.cli`: No such file"), "{}", call.stderr);
+    assert_eq!(folder.bytes("a.cli"), TIDY.as_bytes());
+}
+
+#[cfg(unix)]
+mod unix {
+    use std::fs;
+    use std::os::unix::fs::{PermissionsExt, symlink};
+
+    use super::*;
+
+    #[test]
+    fn a_read_only_scene_is_left_alone() {
+        let folder = Folder::with_scene(LOOSE);
+        fs::set_permissions(folder.at("a.cli"), fs::Permissions::from_mode(0o444)).expect("set rights");
+        let call = folder.clisc(&["fmt", "a.cli"]);
+        assert_eq!(call.code, Some(2));
+        assert_eq!(call.stderr.lines().next(), Some("error: cannot save `a.cli`: permission denied"));
+        assert_eq!(folder.bytes("a.cli"), LOOSE.as_bytes());
+        assert_eq!(folder.clisc(&["fmt", "--check", "a.cli"]).code, Some(1));
+    }
+
+    #[test]
+    fn a_link_stays_a_link_and_rights_stay() {
+        let folder = Folder::with_scene(LOOSE);
+        fs::set_permissions(folder.at("a.cli"), fs::Permissions::from_mode(0o600)).expect("set rights");
+        symlink("a.cli", folder.at("b.cli")).expect("a link");
+        assert_eq!(folder.clisc(&["fmt", "b.cli", "a.cli"]).stderr, "1 scene formatted, 0 unchanged\n");
+        assert!(fs::symlink_metadata(folder.at("b.cli")).expect("a link").is_symlink());
+        assert_eq!(folder.bytes("a.cli"), TIDY.as_bytes());
+        let rights = fs::metadata(folder.at("a.cli")).expect("a file").permissions().mode();
+        assert_eq!(rights & 0o7777, 0o600);
+    }
+
+    #[test]
+    fn bytes_that_are_no_text_stay_as_they_are() {
+        let folder = Folder::new();
+        folder.put("a.cli", b"fov  60 # \xFC\n fov 60\n");
+        assert_eq!(folder.clisc(&["fmt", "--diff", "-"]).code, Some(0));
+        assert_eq!(folder.clisc(&["fmt", "a.cli"]).code, Some(0));
+        assert_eq!(folder.bytes("a.cli"), b"fov  60 # \xFC\nfov 60\n");
+    }
+}
