@@ -126,7 +126,8 @@ fn each_foreign_tool_has_one_room() {
         ("chumsky::", "src/syntax/parser"),
         ("png::", "src/image"),
         ("crc32fast::", "src/image"),
-        ("image::Image", "src/image"),
+        ("image::ImageFormat", "src/image"),
+        ("image::ImageReader", "src/image"),
         ("unsafe {", "src/trace/kernels"),
         ("unsafe fn", "src/trace/kernels"),
     ];

@@ -12,7 +12,6 @@ use clap::{Parser, Subcommand};
 pub use check::{CheckArgs, CheckFormat};
 pub use explain::ExplainArgs;
 pub use fmt::FmtArgs;
-pub use image::ImageArgs;
 pub use ir::{DumpFormat, Emit, IrArgs};
 pub use run::{RunArgs, StatsFormat};
 
