@@ -49,6 +49,32 @@ fn json_is_one_document_for_all_scenes() {
 }
 
 #[test]
+fn every_format_tells_of_all_scenes_in_the_order_given() {
+    let folder = Folder::with_scene(BAD);
+    (0..40).for_each(|i| folder.put(&format!("many/{i:02}.cli"), "write a.png\nfov 0\n"));
+    let call = |format: &str| folder.clisc(&["check", "many", "a.cli", "--format", format]).stdout;
+    let paths = |paths: Vec<String>| {
+        assert_eq!(paths.len(), 40 * 3 + 1, "{paths:?}");
+        assert!(paths.is_sorted_by_key(|path| (path == "a.cli", path.clone())), "{paths:?}");
+    };
+    let json: serde_json::Value = serde_json::from_str(&call("json")).expect("JSON");
+    let of = |list: &serde_json::Value, pointer: &str| {
+        let list = list.as_array().expect("a list");
+        list.iter()
+            .map(|found| found.pointer(pointer).and_then(|path| path.as_str()).expect("a path").to_owned())
+            .collect()
+    };
+    paths(of(&json["diagnostics"], "/path"));
+    let sarif: serde_json::Value = serde_json::from_str(&call("sarif")).expect("SARIF");
+    paths(of(&sarif["runs"][0]["results"], "/locations/0/physicalLocation/artifactLocation/uri"));
+    let gitlab: serde_json::Value = serde_json::from_str(&call("gitlab")).expect("JSON");
+    paths(of(&gitlab, "/location/path"));
+    let until = |line: &str, end: char| line.split(end).next().unwrap_or_default().to_owned();
+    paths(call("short").lines().map(|line| until(line, ':')).collect());
+    paths(call("github").lines().map(|line| until(line.split("file=").nth(1).unwrap_or_default(), ',')).collect());
+}
+
+#[test]
 fn warnings_are_fine_until_they_are_denied() {
     let folder = Folder::with_scene(&scene("a.png").replace("fov 60\n", ""));
     let call = folder.clisc(&["check", "a.cli"]);

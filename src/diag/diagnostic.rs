@@ -18,8 +18,10 @@ pub struct Label {
 /// labels show the other places that explain it, `help` says what to do, `note` the rule behind it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
-    /// The code, which also fixes the severity.
+    /// What kind of finding it is.
     pub code: &'static Code,
+    /// How much it matters: what its code says, unless a configuration says otherwise.
+    pub severity: Severity,
     /// What is wrong; lower case, no final stop, names in backticks.
     pub message: String,
     /// Where it is wrong.
@@ -41,6 +43,7 @@ impl Diagnostic {
         let primary = Label { span, message: String::new() };
         Self {
             code,
+            severity: code.severity,
             message: message.into(),
             primary,
             secondary: Vec::new(),
@@ -85,10 +88,10 @@ impl Diagnostic {
         self
     }
 
-    /// Returns the severity of its code.
+    /// Returns how much it matters.
     #[must_use]
     pub fn severity(&self) -> Severity {
-        self.code.severity
+        self.severity
     }
 
     /// Tells whether the scene cannot be rendered because of it.

@@ -150,8 +150,9 @@ pub struct Explanation {
 /// When the page has not the shape that every page has.
 #[must_use]
 pub fn explanation(code: &Code) -> Explanation {
-    let title = code.explanation.lines().next().and_then(|line| line.strip_prefix("# ")).expect("a title");
-    let fences: Vec<_> = code.explanation.split("```").collect();
+    let page = code.page();
+    let title = page.lines().next().and_then(|line| line.strip_prefix("# ")).expect("a title");
+    let fences: Vec<_> = page.split("```").collect();
     let [_, failing, _, repaired, _] = fences[..] else { panic!("{}: two fenced scenes, no more", code.id) };
     let (tag, _) = failing.split_once('\n').expect("a fenced scene");
     let scene = |fenced: &str| {

@@ -1,5 +1,6 @@
 //! Finding and reading scenes.
 
+use std::collections::HashSet;
 use std::ffi::OsStr;
 use std::fs::{self, File};
 use std::io::{self, Read};
@@ -35,9 +36,58 @@ pub fn is_stdin(path: &Path) -> bool {
     path == Path::new("-")
 }
 
+/// How many scenes are in memory at a time, and how many bytes of them.
+const MAX_BATCH: (usize, u64) = (32, 64 << 20);
+
+/// Does `work` on each scene, on all cores, and hands the results to `take`, in order.
+///
+/// # Errors
+/// The first of `take`, which ends it all.
+pub fn for_each_scene<T: Send>(
+    scenes: &[PathBuf],
+    work: impl Fn(&Path) -> T + Sync,
+    mut take: impl FnMut(&Path, T) -> anyhow::Result<()>,
+) -> anyhow::Result<()> {
+    let mut rest = scenes;
+    while !rest.is_empty() {
+        let (batch, others) = rest.split_at(batch_len(rest));
+        let results: Vec<T> = match batch {
+            // A single scene may use all cores itself.
+            [only] => vec![work(only)],
+            _ => batch.par_iter().map(|path| work(path)).collect(),
+        };
+        batch.iter().zip(results).try_for_each(|(path, result)| take(path, result))?;
+        rest = others;
+    }
+    Ok(())
+}
+
+/// Returns how many of the first scenes fit in memory together, at least one.
+fn batch_len(scenes: &[PathBuf]) -> usize {
+    let mut n_bytes = 0;
+    let fits = |path: &&PathBuf| {
+        n_bytes += fs::metadata(path).map_or(0, |found| found.len());
+        n_bytes <= MAX_BATCH.1
+    };
+    scenes.iter().take(MAX_BATCH.0).take_while(fits).count().max(1)
+}
+
+/// Returns the scenes that the arguments mean, each once, as far as folders can be read. Says what could not be.
+pub fn find_all_scenes(paths: &[PathBuf]) -> (Vec<PathBuf>, Vec<anyhow::Error>) {
+    let mut seen = HashSet::new();
+    let (mut scenes, mut missed) = (Vec::new(), Vec::new());
+    for path in paths {
+        let (found, not_found) = find_scenes(path);
+        missed.extend(not_found);
+        let is_new = |path: &PathBuf| seen.insert(fs::canonicalize(path).unwrap_or_else(|_| path.clone()));
+        scenes.extend(found.into_iter().filter(is_new));
+    }
+    (scenes, missed)
+}
+
 /// Returns the scenes that an argument means: itself, or every `.cli` file below the folder it names, as far as that can
 /// be read. Says what could not be.
-pub fn find_scenes(path: &Path) -> (Vec<PathBuf>, Vec<anyhow::Error>) {
+fn find_scenes(path: &Path) -> (Vec<PathBuf>, Vec<anyhow::Error>) {
     if !path.is_dir() {
         return (vec![path.to_owned()], Vec::new());
     }

@@ -7,9 +7,11 @@ use std::io::{self, BufWriter, ErrorKind, IsTerminal, Write};
 use anyhow::Context;
 use clisc::Compilation;
 use clisc::diag::Severity;
-use clisc::diag::render::harmless;
+use clisc::diag::render::{Color, Format, Report, harmless};
 use clisc::diag::words::counted;
 use clisc::source::Source;
+
+use crate::args::ReportFormat;
 
 /// What it means when results cannot be written.
 pub const CANNOT_WRITE: &str = "cannot write to standard output";
@@ -22,6 +24,31 @@ pub fn stdout() -> impl Write {
 /// Returns standard error, buffered, for messages of any length; it has to be flushed.
 pub fn stderr() -> impl Write {
     BufWriter::new(Patient(io::stderr().lock()))
+}
+
+/// Begins a report on standard output; it has to be [finished](finish).
+///
+/// # Errors
+/// When it cannot be written.
+pub fn report(format: ReportFormat) -> anyhow::Result<Report<impl Write>> {
+    let format = match format {
+        ReportFormat::Human if stdout_has_color() => Format::Human(Color::Always),
+        ReportFormat::Human => Format::Human(Color::Never),
+        ReportFormat::Short => Format::Short,
+        ReportFormat::Json => Format::Json,
+        ReportFormat::Sarif => Format::Sarif,
+        ReportFormat::Github => Format::Github,
+        ReportFormat::Gitlab => Format::Gitlab,
+    };
+    Report::begin(format, stdout()).context(CANNOT_WRITE)
+}
+
+/// Ends a report.
+///
+/// # Errors
+/// When it cannot be written.
+pub fn finish(report: Report<impl Write>) -> anyhow::Result<()> {
+    report.finish().and_then(|mut out| out.flush()).context(CANNOT_WRITE)
 }
 
 /// Prints results to standard output.

@@ -1,12 +1,14 @@
 //! One JSON document for all diagnostics of a run.
 //!
-//! The shape is versioned: a field may be added, none changes its meaning without a new [`VERSION`].
+//! The shape is versioned: a field may be added, none changes its meaning without a new [`VERSION`]. Its schema is
+//! `docs/schemas/diagnostics-v1.schema.json`.
 
 use std::io::{self, Write};
 
 use serde::Serialize;
 
-use crate::diag::{Diagnostic, Label, Severity};
+use crate::diag::render::place::{Items, ends};
+use crate::diag::{Diagnostic, Edit, Fix, Label, Safety, Severity};
 use crate::source::{Position, Source, Span};
 
 /// The version of the document's shape.
@@ -16,7 +18,7 @@ pub const VERSION: u32 = 1;
 #[derive(Debug)]
 pub struct JsonReport<W: Write> {
     out: W,
-    n_listed: usize,
+    listed: Items,
     n_errors: usize,
     n_warnings: usize,
 }
@@ -28,7 +30,7 @@ impl<W: Write> JsonReport<W> {
     /// Those of `out`.
     pub fn begin(mut out: W) -> io::Result<Self> {
         write!(out, "{{\n  \"version\": {VERSION},\n  \"diagnostics\": [")?;
-        Ok(Self { out, n_listed: 0, n_errors: 0, n_warnings: 0 })
+        Ok(Self { out, listed: Items::default(), n_errors: 0, n_warnings: 0 })
     }
 
     /// Writes the diagnostics of one source.
@@ -37,10 +39,7 @@ impl<W: Write> JsonReport<W> {
     /// Those of the writer.
     pub fn add(&mut self, source: &Source, diagnostics: &[Diagnostic]) -> io::Result<()> {
         for diagnostic in diagnostics {
-            let separator = if self.n_listed == 0 { "\n    " } else { ",\n    " };
-            self.out.write_all(separator.as_bytes())?;
-            serde_json::to_writer(&mut self.out, &JsonDiagnostic::new(source, diagnostic))?;
-            self.n_listed += 1;
+            self.listed.write(&JsonDiagnostic::new(source, diagnostic), &mut self.out)?;
             self.count(diagnostic.severity(), 1);
         }
         Ok(())
@@ -59,10 +58,10 @@ impl<W: Write> JsonReport<W> {
     /// # Errors
     /// Those of the writer.
     pub fn finish(mut self) -> io::Result<W> {
-        let Self { n_listed, n_errors, n_warnings, .. } = self;
-        let n_unlisted = n_errors + n_warnings - n_listed;
-        let close = if n_listed == 0 { "]" } else { "\n  ]" };
-        writeln!(self.out, "{close},\n  \"errors\": {n_errors},\n  \"warnings\": {n_warnings},")?;
+        let Self { n_errors, n_warnings, .. } = self;
+        let n_unlisted = n_errors + n_warnings - self.listed.n();
+        self.listed.close(&mut self.out)?;
+        writeln!(self.out, ",\n  \"errors\": {n_errors},\n  \"warnings\": {n_warnings},")?;
         writeln!(self.out, "  \"unlisted\": {n_unlisted}\n}}")?;
         Ok(self.out)
     }
@@ -83,12 +82,31 @@ pub fn render_json(source: &Source, diagnostics: &[Diagnostic], out: &mut dyn Wr
 struct JsonDiagnostic<'a> {
     path: &'a str,
     code: &'a str,
+    name: Option<&'a str>,
     severity: Severity,
     message: &'a str,
     primary: JsonLabel<'a>,
     secondary: Vec<JsonLabel<'a>>,
     help: Option<&'a str>,
     note: Option<&'a str>,
+    fixes: Vec<JsonFix<'a>>,
+}
+
+/// A fix, with its places as those of a label.
+#[derive(Serialize)]
+struct JsonFix<'a> {
+    title: &'a str,
+    safety: Safety,
+    edits: Vec<JsonEdit<'a>>,
+}
+
+/// An edit: what stands below its place becomes `replacement`.
+#[derive(Serialize)]
+struct JsonEdit<'a> {
+    bytes: Span,
+    start: Position,
+    end: Position,
+    replacement: &'a str,
 }
 
 /// A label with its place in bytes and as line and column.
@@ -105,19 +123,35 @@ impl<'a> JsonDiagnostic<'a> {
         Self {
             path: source.name(),
             code: diagnostic.code.id,
+            name: diagnostic.code.name,
             severity: diagnostic.severity(),
             message: &diagnostic.message,
             primary: JsonLabel::new(source, &diagnostic.primary),
             secondary: diagnostic.secondary.iter().map(|label| JsonLabel::new(source, label)).collect(),
             help: diagnostic.help.as_deref(),
             note: diagnostic.note.as_deref(),
+            fixes: diagnostic.fixes.iter().map(|fix| JsonFix::new(source, fix)).collect(),
         }
+    }
+}
+
+impl<'a> JsonFix<'a> {
+    fn new(source: &Source, fix: &'a Fix) -> Self {
+        let edits = fix.edits.iter().map(|edit| JsonEdit::new(source, edit)).collect();
+        Self { title: &fix.title, safety: fix.safety, edits }
+    }
+}
+
+impl<'a> JsonEdit<'a> {
+    fn new(source: &Source, edit: &'a Edit) -> Self {
+        let [start, end] = ends(source, edit.span);
+        Self { bytes: edit.span, start, end, replacement: &edit.replacement }
     }
 }
 
 impl<'a> JsonLabel<'a> {
     fn new(source: &'a Source, label: &'a Label) -> Self {
-        let place = |offset| source.lines().position(source.text(), offset);
-        Self { bytes: label.span, start: place(label.span.start), end: place(label.span.end), label: &label.message }
+        let [start, end] = ends(source, label.span);
+        Self { bytes: label.span, start, end, label: &label.message }
     }
 }

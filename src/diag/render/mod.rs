@@ -1,14 +1,24 @@
 //! Diagnostics as text and JSON, written to any writer.
 //!
-//! Three forms of one list: [`render_human`] draws the places, [`render_short`] gives one line each, [`JsonReport`] one
-//! document for programs. All show the message as it is; none decides what is worth showing.
+//! Six forms of one list: [`render_human`] draws the places, [`render_short`] gives one line each; for programs there is
+//! [`JsonReport`], a document of our own, [`SarifReport`], [`render_github`] and [`GitlabReport`]. [`Report`] is any of
+//! them. All show the message as it is; none decides what is worth showing.
 
+mod github;
+mod gitlab;
 mod human;
 mod json;
+mod place;
+mod report;
+mod sarif;
 mod short;
 
+pub use github::render_github;
+pub use gitlab::GitlabReport;
 pub use human::{Color, render_human};
 pub use json::{JsonReport, render_json};
+pub use report::{Format, Report};
+pub use sarif::SarifReport;
 pub use short::render_short;
 
 use std::borrow::Cow;

@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
+
+use crate::args::ReportFormat;
 
 /// Arguments of `clisc check`.
 #[derive(Args, Debug)]
@@ -13,7 +15,7 @@ pub struct CheckArgs {
     pub paths: Vec<PathBuf>,
     /// How to show what was found.
     #[arg(long, value_enum, default_value_t)]
-    pub format: CheckFormat,
+    pub format: ReportFormat,
     /// Take warnings for errors.
     #[arg(long)]
     pub deny_warnings: bool,
@@ -25,15 +27,3 @@ Examples:
   clisc check scenes --format short    one line each: path:line:column
   clisc check - --format json < a.cli  for other programs
   clisc check scenes --deny-warnings   a gate: exit code 1 when there is anything to say";
-
-/// How `clisc check` shows what it found.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub enum CheckFormat {
-    /// The lines of the scene with the mistakes marked.
-    #[default]
-    Human,
-    /// One line each.
-    Short,
-    /// One JSON document.
-    Json,
-}

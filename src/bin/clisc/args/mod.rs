@@ -5,14 +5,16 @@ mod explain;
 mod fmt;
 mod image;
 mod ir;
+mod report;
 mod run;
 
 use clap::{Parser, Subcommand};
 
-pub use check::{CheckArgs, CheckFormat};
+pub use check::CheckArgs;
 pub use explain::ExplainArgs;
 pub use fmt::FmtArgs;
 pub use ir::{DumpFormat, Emit, IrArgs};
+pub use report::ReportFormat;
 pub use run::{RunArgs, StatsFormat};
 
 /// Compiles and renders `.cli` scenes.

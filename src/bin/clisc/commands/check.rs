@@ -1,49 +1,51 @@
 //! `clisc check`.
 
-use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
 
 use anyhow::Context;
 use clisc::Compilation;
 use clisc::diag::Severity;
-use clisc::diag::render::{Color, JsonReport, render_human, render_short};
 use clisc::diag::words::counted;
 use clisc::exec::refused_names;
+use clisc::ir::Program;
 use clisc::source::Source;
 
-use crate::args::{CheckArgs, CheckFormat};
+use crate::args::CheckArgs;
 use crate::outcome::Outcome;
 use crate::{input, print};
 
-/// Checks scenes. What is wrong with them is the result and goes to standard output; a scene that cannot be read does
-/// not keep the others from being checked.
+/// Checks scenes, on all cores and told of in the order given. What is wrong with them is the result and goes to standard
+/// output; a scene that cannot be read does not keep the others from being checked.
 pub fn run(args: &CheckArgs) -> anyhow::Result<ExitCode> {
-    let mut printer = Printer::new(args.format)?;
     let mut tally = Tally::default();
-    for path in &args.paths {
-        let (scenes, missed) = input::find_scenes(path);
-        missed.iter().for_each(|error| tally.miss(error));
-        scenes.iter().try_for_each(|scene| check(scene, &mut printer, &mut tally))?;
-    }
-    printer.finish()?;
+    let (scenes, missed) = input::find_all_scenes(&args.paths);
+    missed.iter().for_each(|error| tally.miss(error));
+    let mut report = print::report(args.format)?;
+    input::for_each_scene(&scenes, check, |_, checked| {
+        match checked {
+            Ok((source, compilation)) => {
+                tally.add(&compilation);
+                let n_unlisted = [Severity::Error, Severity::Warning].map(|severity| compilation.n_unlisted(severity));
+                report.add(&source, &compilation.diagnostics, n_unlisted).context(print::CANNOT_WRITE)?;
+                print::unlisted_to_stderr(&source, &compilation);
+            }
+            Err(error) => tally.miss(&error),
+        }
+        Ok(())
+    })?;
+    print::finish(report)?;
     print::to_stderr(&tally.summary());
     Ok(tally.outcome(args.deny_warnings).into())
 }
 
-/// Checks one scene.
-fn check(path: &Path, printer: &mut Printer, tally: &mut Tally) -> anyhow::Result<()> {
-    match input::read(path) {
-        Ok(source) => {
-            let mut compilation = clisc::compile(&source);
-            compilation.add(refused_names(&compilation.program));
-            tally.add(&compilation);
-            printer.print(&source, &compilation)?;
-            print::unlisted_to_stderr(&source, &compilation);
-        }
-        Err(error) => tally.miss(&error),
-    }
-    Ok(())
+/// Checks one scene; its program is not kept.
+fn check(path: &Path) -> anyhow::Result<(Source, Compilation)> {
+    let source = input::read(path)?;
+    let mut compilation = clisc::compile(&source);
+    compilation.add(refused_names(&compilation.program));
+    compilation.program = Program::default();
+    Ok((source, compilation))
 }
 
 /// What has been found so far.
@@ -80,49 +82,5 @@ impl Tally {
             (false, 0) => Outcome::Fine,
             (false, _) => Outcome::SceneErrors,
         }
-    }
-}
-
-/// Prints diagnostics as the command line asks.
-enum Printer {
-    Human(Color),
-    Short,
-    Json(JsonReport<Box<dyn Write>>),
-}
-
-impl Printer {
-    fn new(format: CheckFormat) -> anyhow::Result<Self> {
-        Ok(match format {
-            CheckFormat::Human if print::stdout_has_color() => Self::Human(Color::Always),
-            CheckFormat::Human => Self::Human(Color::Never),
-            CheckFormat::Short => Self::Short,
-            CheckFormat::Json => {
-                let out: Box<dyn Write> = Box::new(print::stdout());
-                Self::Json(JsonReport::begin(out).context(print::CANNOT_WRITE)?)
-            }
-        })
-    }
-
-    fn print(&mut self, source: &Source, compilation: &Compilation) -> anyhow::Result<()> {
-        let diagnostics = &compilation.diagnostics;
-        let mut out = print::stdout();
-        let written = match self {
-            Self::Human(color) => render_human(source, diagnostics, *color, &mut out),
-            Self::Short => render_short(source, diagnostics, &mut out),
-            Self::Json(report) => {
-                for severity in [Severity::Error, Severity::Warning] {
-                    report.count(severity, compilation.n_unlisted(severity));
-                }
-                report.add(source, diagnostics)
-            }
-        };
-        written.and_then(|()| out.flush()).context(print::CANNOT_WRITE)
-    }
-
-    fn finish(self) -> anyhow::Result<()> {
-        if let Self::Json(report) = self {
-            report.finish().and_then(|mut out| out.flush()).context(print::CANNOT_WRITE)?;
-        }
-        Ok(())
     }
 }

@@ -18,7 +18,7 @@ pub fn run(args: &ExplainArgs) -> anyhow::Result<ExitCode> {
         let nearest = codes::nearest(id.trim()).map_or_else(String::new, |code| format!("; did you mean {}?", code.id));
         anyhow::bail!("there is no code `{id}`{nearest} (`clisc explain` lists them all)");
     };
-    print::to_stdout(code.explanation)?;
+    print::to_stdout(&code.page())?;
     Ok(Outcome::Fine.into())
 }
 

@@ -1,59 +1,40 @@
 //! `clisc fmt`.
 
-use std::collections::HashSet;
-use std::fs;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
 
 use anyhow::Context;
 use clisc::diag::words::counted;
 use clisc::format::{changes, format};
 use clisc::source::Source;
-use rayon::prelude::*;
 
 use crate::args::FmtArgs;
 use crate::diff::Diff;
 use crate::outcome::Outcome;
 use crate::{disk, input, print};
 
-/// How many scenes are in memory at a time.
-const BATCH: usize = 32;
-
 /// Formats scenes, on all cores and told of in the order given. A scene that cannot be read or saved does not keep the
 /// others from being formatted.
 pub fn run(args: &FmtArgs) -> anyhow::Result<ExitCode> {
     let mut tally = Tally::default();
-    let scenes = scenes_of(&args.paths, &mut tally);
-    for batch in scenes.chunks(BATCH) {
-        let results: Vec<_> = batch.par_iter().map(|path| format_scene(path, args)).collect();
-        for (path, result) in batch.iter().zip(results) {
-            match result {
-                Ok(scene) => {
-                    scene.show(path, args)?;
-                    tally.add(&scene);
-                }
-                Err(error) => tally.miss(&error),
+    let (scenes, missed) = input::find_all_scenes(&args.paths);
+    missed.iter().for_each(|error| tally.miss(error));
+    let formatted = |path: &Path| format_scene(path, args);
+    input::for_each_scene(&scenes, formatted, |path, result| {
+        match result {
+            Ok(scene) => {
+                scene.show(path, args)?;
+                tally.add(&scene);
             }
+            Err(error) => tally.miss(&error),
         }
-    }
+        Ok(())
+    })?;
     if scenes.iter().any(|path| !input::is_stdin(path)) {
         print::to_stderr(&tally.summary(args));
     }
     Ok(tally.outcome(args).into())
-}
-
-/// Returns the scenes that the arguments mean, each once.
-fn scenes_of(paths: &[PathBuf], tally: &mut Tally) -> Vec<PathBuf> {
-    let mut seen = HashSet::new();
-    let mut scenes = Vec::new();
-    for path in paths {
-        let (found, missed) = input::find_scenes(path);
-        missed.iter().for_each(|error| tally.miss(error));
-        let is_new = |path: &PathBuf| seen.insert(fs::canonicalize(path).unwrap_or_else(|_| path.clone()));
-        scenes.extend(found.into_iter().filter(is_new));
-    }
-    scenes
 }
 
 /// A scene that has been formatted.

@@ -1,0 +1,139 @@
+//! What other programs read: each format is valid, stable and says what was found.
+
+#[path = "support/schema.rs"]
+mod schema;
+#[path = "support/tree.rs"]
+mod tree;
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+
+use clisc::diag::fix::apply;
+use clisc::diag::render::{Format, Report};
+use clisc::diag::{Diagnostic, Edit, Fix};
+use clisc::source::{LineIndex, Source};
+use clisc::{Compilation, compile};
+use serde_json::Value;
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn schema_at(path: &str) -> Value {
+    let text = fs::read_to_string(root().join(path)).expect("a schema");
+    serde_json::from_str(&text).expect("JSON")
+}
+
+/// Every fixture, every invalid scene, and an empty one: whatever can be found is found in one of them.
+fn scenes() -> Vec<(Source, Compilation)> {
+    let folders = ["tests/fixtures", "scenes/invalid"];
+    let paths = folders.iter().flat_map(|folder| tree::files_below(&root().join(folder)));
+    let read = |path: std::path::PathBuf| {
+        let name = path.strip_prefix(root()).expect("a path of the project").display().to_string();
+        Source::from_bytes(name, fs::read(&path).expect("a scene")).expect("a small scene")
+    };
+    let odd = [Source::new("empty.cli", ""), Source::new("a b#%.cli", "\u{FEFF}sphere\u{A0}1 \"π\r\nfov 0\r\n")];
+    let sources = paths.map(read).chain(odd);
+    sources.map(|source| (compile(&source), source)).map(|(found, source)| (source, found)).collect()
+}
+
+fn report(format: Format, scenes: &[(Source, Compilation)]) -> String {
+    let mut report = Report::begin(format, Vec::new()).expect("written to memory");
+    for (source, compilation) in scenes {
+        report.add(source, &compilation.diagnostics, [0, 0]).expect("written to memory");
+    }
+    String::from_utf8(report.finish().expect("written to memory")).expect("text")
+}
+
+fn parsed(format: Format, scenes: &[(Source, Compilation)]) -> Value {
+    serde_json::from_str(&report(format, scenes)).expect("one JSON document")
+}
+
+#[test]
+fn json_is_as_its_schema_says() {
+    let schema = schema_at("docs/schemas/diagnostics-v1.schema.json");
+    let scenes = scenes();
+    let document = parsed(Format::Json, &scenes);
+    assert_eq!(schema::violations(&schema, &document), [""; 0]);
+    let n_found: usize = scenes.iter().map(|(_, found)| found.diagnostics.len()).sum();
+    assert_eq!(document["diagnostics"].as_array().map(Vec::len), Some(n_found));
+    assert_eq!(schema::violations(&schema, &parsed(Format::Json, &[])), [""; 0]);
+    // And the schema is worth something: it refuses a document with a field too few.
+    let mut less = document;
+    less["diagnostics"][0]["primary"]["start"].as_object_mut().expect("a place").remove("line");
+    assert_eq!(schema::violations(&schema, &less).len(), 1);
+}
+
+#[test]
+fn sarif_is_as_its_schema_says_and_its_places_are_those_of_the_text() {
+    let schema = schema_at("tests/schemas/sarif.schema.json");
+    let scenes = scenes();
+    let document = parsed(Format::Sarif, &scenes);
+    assert_eq!(schema::violations(&schema, &document), [""; 0]);
+    assert_eq!(schema::violations(&schema, &parsed(Format::Sarif, &[])), [""; 0]);
+
+    let run = &document["runs"][0];
+    let mut results = run["results"].as_array().expect("results").iter();
+    for (source, compilation) in &scenes {
+        for diagnostic in &compilation.diagnostics {
+            let result = results.next().expect("a result for each diagnostic");
+            assert_eq!(
+                run["tool"]["driver"]["rules"][result["ruleIndex"].as_u64().expect("an index") as usize]["id"],
+                result["ruleId"]
+            );
+            assert_eq!(result["ruleId"], diagnostic.code.id);
+            for (i, fix) in diagnostic.fixes.iter().enumerate() {
+                let replacements = &result["fixes"][i]["artifactChanges"][0]["replacements"];
+                assert_eq!(applied(source, replacements), apply(source.text(), [fix]).text);
+            }
+        }
+    }
+    assert!(results.next().is_none());
+}
+
+/// Carries out replacements as a reader of SARIF would, by lines and columns.
+fn applied(source: &Source, replacements: &Value) -> String {
+    let offset = |line: &Value, column: &Value| {
+        let text = source.text();
+        let line = LineIndex::new(text).line_span(text, line.as_u64().expect("a line") as usize - 1);
+        let has_bom = line.start == 0 && text.starts_with('\u{FEFF}');
+        let n_before = column.as_u64().expect("a column") as usize - 1 + usize::from(has_bom);
+        let rest = &text[line.start as usize..];
+        line.start + rest.char_indices().nth(n_before).map_or(rest.len(), |(at, _)| at) as u32
+    };
+    let edits = replacements.as_array().expect("replacements").iter().map(|replacement| {
+        let region = &replacement["deletedRegion"];
+        let start = offset(&region["startLine"], &region["startColumn"]);
+        let end = offset(&region["endLine"], &region["endColumn"]);
+        let text = replacement["insertedContent"]["text"].as_str().unwrap_or_default();
+        Edit::replace(clisc::source::Span::new(start, end), text)
+    });
+    apply(source.text(), [&Fix::safe("as read", edits.collect())]).text
+}
+
+#[test]
+fn gitlab_knows_each_finding_by_a_fingerprint_of_its_own() {
+    let scenes = scenes();
+    let document = parsed(Format::Gitlab, &scenes);
+    let issues = document.as_array().expect("an array");
+    let all: Vec<&Diagnostic> = scenes.iter().flat_map(|(_, found)| &found.diagnostics).collect();
+    assert_eq!(issues.len(), all.len());
+    let fingerprints: BTreeSet<_> = issues.iter().map(|issue| issue["fingerprint"].as_str().expect("text")).collect();
+    assert_eq!(fingerprints.len(), issues.len());
+    for (issue, diagnostic) in issues.iter().zip(all) {
+        assert_eq!(issue["description"], diagnostic.message);
+        assert_eq!(issue["severity"], if diagnostic.is_error() { "major" } else { "minor" });
+        assert!(issue["location"]["lines"]["begin"].as_u64() >= Some(1));
+    }
+    assert_eq!(parsed(Format::Gitlab, &[]), serde_json::json!([]));
+}
+
+#[test]
+fn github_gets_a_line_for_each_finding() {
+    let scenes = scenes();
+    let lines = report(Format::Github, &scenes);
+    let n_found: usize = scenes.iter().map(|(_, found)| found.diagnostics.len()).sum();
+    assert_eq!(lines.lines().count(), n_found);
+    assert!(lines.lines().all(|line| line.starts_with("::error file=") || line.starts_with("::warning file=")));
+}
