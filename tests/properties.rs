@@ -1,4 +1,5 @@
-//! Laws of the tracer that need no oracle: what must not change the image, and what must mirror it.
+//! Laws of the tracer that need no oracle: what must not change the image. `tests/metamorphic.rs` has those of changed
+//! scenes.
 
 mod families;
 
@@ -70,21 +71,6 @@ fn threads_and_bands_do_not_change_the_image() {
 }
 
 #[test]
-fn a_power_of_two_does_not_change_the_image() {
-    for_all_sketches(|title, sketch| {
-        let image = render(sketch);
-        for exponent in [-300, -171, -1, 5, 200, 300] {
-            let factor = f64::from_bits(((1023 + exponent) as u64) << 52);
-            let scaled = sketch.map_lengths(|length| length * factor);
-            // Beyond the normal numbers it would be another scene.
-            if scaled.is_normal() {
-                assert_same(&format!("{title} scaled by 2^{exponent}"), sketch, &image, &render(&scaled));
-            }
-        }
-    });
-}
-
-#[test]
 fn the_order_of_distinct_objects_does_not_change_the_image() {
     // Families without ties between objects.
     let without_ties =
@@ -104,18 +90,6 @@ fn copies_behind_the_first_are_never_seen() {
         Finish { ambient: [1.0, 0.0, 1.0], diffuse: [0.0; 3], specular: [1.0; 3], shininess: 1.0, reflectance: 1.0 };
     for_all_sketches(|title, sketch| {
         assert_same(&format!("{title} with copies"), sketch, &render(sketch), &render(&sketch.with_copies(garish)));
-    });
-}
-
-#[test]
-fn a_black_light_changes_nothing() {
-    for_all_sketches(|title, sketch| {
-        // Far away too, where it would outgrow the scene by more than squares can bear.
-        for distance in [1.0, 1e120] {
-            let mut lit = sketch.clone();
-            lit.light([0.0; 3], [0.3, 0.7, -1.1].map(|length| length * distance * sketch.largest_length()));
-            assert_same(&format!("{title} with a black light"), sketch, &render(sketch), &render(&lit));
-        }
     });
 }
 
@@ -155,23 +129,4 @@ fn a_cancelled_render_traces_no_further_pixel() {
     let mut rgb = vec![0; (WIDTH * HEIGHT * 3) as usize];
     let counts = Tracer::new(plan(view, &settings())).render_rows_unless(0..HEIGHT, &mut rgb, &|| true);
     assert_eq!(counts.eye_rays, 0);
-}
-
-#[test]
-fn a_mirrored_scene_gives_a_mirrored_image() {
-    for_all_sketches(|title, sketch| {
-        let image = render(sketch);
-        let mirrored = render(&sketch.mirrored());
-        // Samples lie on the left edge of a pixel: column i mirrors column W − i, and column 0 has no counterpart.
-        let turn = |image: &[u8]| -> Vec<u8> {
-            let rows = image.chunks(WIDTH as usize * 3);
-            rows.flat_map(|row| row.chunks(3).take(1).chain(row.chunks(3).skip(1).rev()).flatten().copied()).collect()
-        };
-        let mut turned = turn(&mirrored);
-        for row in 0..HEIGHT as usize {
-            let first = row * WIDTH as usize * 3;
-            turned[first..first + 3].copy_from_slice(&image[first..first + 3]);
-        }
-        assert_same(&format!("{title} mirrored"), sketch, &image, &turned);
-    });
 }

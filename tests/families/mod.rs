@@ -6,6 +6,7 @@
 #![allow(dead_code, reason = "each suite uses a part")]
 
 pub mod sketch;
+mod transform;
 
 use clisc::testing::Stream;
 
