@@ -13,8 +13,8 @@ use clisc::trace::Tracer;
 use proptest::prelude::*;
 use proptest::test_runner::{RngSeed, TestCaseResult, TestRunner};
 
-use families::FAMILIES;
 use families::sketch::{Finish, Sketch};
+use families::{FAMILIES, WITHOUT_TIES};
 
 /// A size of several packets and a rest, with as many rows above the middle as below.
 const SIZE: [usize; 2] = [28, 20];
@@ -73,10 +73,14 @@ type Object = (bool, [f64; 3], f64, f64);
 
 /// Returns scenes of a few lights and objects, the eye anywhere among them.
 fn dyadic_scene() -> impl Strategy<Value = Sketch> {
+    dyadic_scene_seen_at(&[30.0, 60.0, 90.0, 120.0])
+}
+
+fn dyadic_scene_seen_at(fovs_deg: &'static [f64]) -> impl Strategy<Value = Sketch> {
     let lights = prop::collection::vec((color(160), place(), length(-64, 512)), 1..4);
     let object = (any::<bool>(), place(), length(4, 120), length(1, 200));
     let objects = prop::collection::vec((finish(), object), 1..7);
-    let fov_deg = prop::sample::select(vec![30.0, 60.0, 90.0, 120.0]);
+    let fov_deg = prop::sample::select(fovs_deg);
     (fov_deg, color(256), lights, objects).prop_map(|(fov_deg, background, lights, objects)| {
         let mut scene = Sketch::new(fov_deg, background);
         for (color, [x, y, z], nearer) in lights {
@@ -101,6 +105,15 @@ fn add(scene: &mut Sketch, (is_sphere, [x, y, z], size, height): Object) {
 fn any_scene() -> impl Strategy<Value = Sketch> {
     let of_family = (0..FAMILIES.len(), 0..1000_u64).prop_map(|(family, seed)| FAMILIES[family].sketch(seed));
     prop_oneof![dyadic_scene(), of_family]
+}
+
+/// Returns scenes in which no ray leaves a point of two surfaces: it might lead into one of them, and so see its inside.
+/// The eye rays of these angles meet no point of the dyadic ones where two surfaces do.
+fn scene_without_contacts() -> impl Strategy<Value = Sketch> {
+    let of_family = (prop::sample::select(&WITHOUT_TIES), 0..1000_u64).prop_map(|(name, seed)| {
+        FAMILIES.iter().find(|family| family.name == name).expect("a family of this name").sketch(seed)
+    });
+    prop_oneof![dyadic_scene_seen_at(&[31.0, 55.5, 111.0]), of_family]
 }
 
 fn render(scene: &Sketch, [width, height]: [usize; 2]) -> Image {
@@ -170,12 +183,12 @@ fn no_factor_changes_the_image_if_it_rounds_nothing() {
 
 #[test]
 fn a_cylinder_in_two_halves_is_the_same_cylinder() {
-    for_all(any_scene(), |scene| expect_same(scene, &scene.with_split_cylinders()));
+    for_all(scene_without_contacts(), |scene| expect_same(scene, &scene.with_split_cylinders()));
 }
 
 #[test]
 fn what_is_inside_of_an_object_is_not_seen() {
-    for_all(any_scene(), |scene| expect_same(scene, &scene.with_hidden_balls()));
+    for_all(scene_without_contacts(), |scene| expect_same(scene, &scene.with_hidden_balls()));
 }
 
 #[test]

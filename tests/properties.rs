@@ -11,8 +11,8 @@ use clisc::plan::{Part, Settings, Size, plan};
 use clisc::source::Source;
 use clisc::trace::Tracer;
 
-use families::FAMILIES;
 use families::sketch::{Finish, Sketch};
+use families::{FAMILIES, WITHOUT_TIES};
 
 /// Seeds of each family.
 const N_SEEDS: u64 = 3;
@@ -72,10 +72,7 @@ fn threads_and_bands_do_not_change_the_image() {
 
 #[test]
 fn the_order_of_distinct_objects_does_not_change_the_image() {
-    // Families without ties between objects.
-    let without_ties =
-        ["ordinary", "crowd", "eye in a mirrored sphere", "eye in a mirrored cylinder", "lens of 175 degrees"];
-    for family in FAMILIES.iter().filter(|family| without_ties.contains(&family.name)) {
+    for family in FAMILIES.iter().filter(|family| WITHOUT_TIES.contains(&family.name)) {
         for seed in 0..4 * N_SEEDS {
             let sketch = family.sketch(seed);
             let title = format!("{} seed {seed} reversed", family.name);

@@ -69,6 +69,10 @@ pub const FAMILIES: &[Family] = &[
     Family { name: "nothing to see", sketch: nothing },
 ];
 
+/// The names of families in which no ray meets or leaves two surfaces in one point.
+pub const WITHOUT_TIES: [&str; 5] =
+    ["ordinary", "crowd", "eye in a mirrored sphere", "eye in a mirrored cylinder", "lens of 175 degrees"];
+
 /// Families in which a ray's error grows beyond what 106 bits can follow.
 pub const FINEST: &[Family] = &[
     Family { name: "finest specks", sketch: |random| specks(random, &[1e-32]) },
