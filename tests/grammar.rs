@@ -13,69 +13,10 @@ use clisc::syntax::spec::{Arguments, COMMANDS};
 use clisc::testing::Stream;
 
 use crate::support::ebnf::{Automaton, Expr, Grammar, symbols};
+use crate::support::lines;
 
 /// Productions that separate arguments, and are none.
 const SEPARATORS: [&str; 3] = ["S", "comment", "tail"];
-
-/// Pieces of lines, right ones and wrong ones; tests put them together at random.
-const PIECES: [&str; 56] = [
-    "fov",
-    "write",
-    "sphere",
-    "background",
-    "light",
-    "Write",
-    " ",
-    " ",
-    " ",
-    " ",
-    "\t",
-    "\n",
-    "\r\n",
-    "\r",
-    "1",
-    "0.5",
-    "-1",
-    "+",
-    "-",
-    ".",
-    "e",
-    "E5",
-    "1e3",
-    ".png",
-    ".png",
-    "a.png",
-    "x",
-    "\"",
-    "\"",
-    "#",
-    "#",
-    "/",
-    ",",
-    "inf",
-    "0x1",
-    "\u{FEFF}",
-    "\u{A0}",
-    "\u{85}",
-    "\u{2028}",
-    "\u{200B}",
-    "\u{180E}",
-    "\u{3000}",
-    "\u{0}",
-    "\u{1A}",
-    "\u{7F}",
-    "π",
-    "٣",
-    "−",
-    "😀",
-    "fov 60",
-    "write a.png",
-    "write \"a b.png\"",
-    "sphere 1 2 3 4",
-    "_",
-    "..",
-    "\\",
-];
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -230,23 +171,11 @@ fn mutated_sentences_are_taken_or_refused_by_both() {
     for _ in 0..6000 {
         let mut text: Vec<char> = grammar.generate("line", &mut stream).chars().collect();
         for _ in 0..=stream.below(2) {
-            mutate(&mut text, &mut stream);
+            lines::mutate(&mut text, &mut stream);
         }
         n_refused += usize::from(!assert_agreement(&automaton, &text.iter().collect::<String>()));
     }
     assert!((1000..5000).contains(&n_refused), "{n_refused} of 6000 refused: the test sees one side only");
-}
-
-/// Removes a character, puts a piece into its place or before it, or swaps it with the next.
-fn mutate(text: &mut Vec<char>, stream: &mut Stream) {
-    let at = stream.below(text.len() + 1);
-    let end = (at + stream.below(2)).min(text.len());
-    if stream.below(4) == 0 && at + 1 < text.len() {
-        text.swap(at, at + 1);
-    } else {
-        let piece = if stream.below(3) == 0 { "" } else { PIECES[stream.below(PIECES.len())] };
-        text.splice(at..end, piece.chars());
-    }
 }
 
 #[test]
@@ -255,7 +184,7 @@ fn random_lines_are_taken_or_refused_by_both() {
     let mut stream = Stream::new(3);
     let mut n_taken = 0;
     for _ in 0..40_000 {
-        let text: String = (0..stream.below(7)).map(|_| PIECES[stream.below(PIECES.len())]).collect();
+        let text = lines::at_random(&mut stream, 7);
         n_taken += usize::from(assert_agreement(&automaton, &text));
     }
     assert!(n_taken > 2000, "only {n_taken} of 40000 taken: the test sees one side only");

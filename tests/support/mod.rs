@@ -3,6 +3,7 @@
 
 pub mod carets;
 pub mod ebnf;
+pub mod lines;
 
 use std::fs;
 use std::path::{Path, PathBuf};
