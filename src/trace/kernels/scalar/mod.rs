@@ -2,215 +2,227 @@
 
 pub(super) mod single;
 
-use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
+/// Declares lanes of numbers, and their truths, a bit each. The rest of this file reads like the formulas.
+///
+/// An operation is a loop that the compiler turns into a few instructions. It must do so before the operation becomes part
+/// of a kernel (so `inline`, not `inline(always)`): thousands of loops in one function would take it minutes.
+macro_rules! scalar_lanes {
+    ($lanes:ident: [$number:ident; $n:literal], $mask:ident: $bits:ident) => {
+        use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-use crate::trace::kernels::{Mask, Numbers};
+        use crate::trace::kernels::{Mask, Numbers};
 
-/// Eight numbers.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Lanes8([f64; 8]);
+        #[doc = concat!("Lanes of `", stringify!($number), "`.")]
+        #[derive(Clone, Copy, Debug)]
+        pub(in crate::trace::kernels) struct $lanes([$number; $n]);
 
-/// Eight truths, a bit each.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Mask8(u8);
+        #[doc = concat!("Truths of [`", stringify!($lanes), "`], a bit each.")]
+        #[derive(Clone, Copy, Debug)]
+        pub(in crate::trace::kernels) struct $mask($bits);
 
-impl Lanes8 {
-    #[inline(always)]
-    fn map(mut self, f: impl Fn(f64) -> f64) -> Self {
-        for lane in &mut self.0 {
-            *lane = f(*lane);
-        }
-        self
-    }
+        impl $lanes {
+            #[inline]
+            fn map(mut self, f: impl Fn($number) -> $number) -> Self {
+                for lane in &mut self.0 {
+                    *lane = f(*lane);
+                }
+                self
+            }
 
-    #[inline(always)]
-    fn zip(mut self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
-        for (lane, other) in self.0.iter_mut().zip(other.0) {
-            *lane = f(*lane, other);
-        }
-        self
-    }
+            #[inline]
+            fn zip(mut self, other: Self, f: impl Fn($number, $number) -> $number) -> Self {
+                for (lane, other) in self.0.iter_mut().zip(other.0) {
+                    *lane = f(*lane, other);
+                }
+                self
+            }
 
-    #[inline(always)]
-    fn compare(self, other: Self, f: impl Fn(f64, f64) -> bool) -> Mask8 {
-        let mut bits = 0;
-        for i in 0..8 {
-            bits |= u8::from(f(self.0[i], other.0[i])) << i;
-        }
-        Mask8(bits)
-    }
-}
-
-impl Add for Lanes8 {
-    type Output = Self;
-
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        self.zip(other, |a, b| a + b)
-    }
-}
-
-impl Sub for Lanes8 {
-    type Output = Self;
-
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        self.zip(other, |a, b| a - b)
-    }
-}
-
-impl Mul for Lanes8 {
-    type Output = Self;
-
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        self.zip(other, |a, b| a * b)
-    }
-}
-
-impl Div for Lanes8 {
-    type Output = Self;
-
-    #[inline(always)]
-    fn div(self, other: Self) -> Self {
-        self.zip(other, |a, b| a / b)
-    }
-}
-
-impl Neg for Lanes8 {
-    type Output = Self;
-
-    #[inline(always)]
-    fn neg(self) -> Self {
-        self.map(|a| -a)
-    }
-}
-
-impl Numbers for Lanes8 {
-    const N: usize = 8;
-
-    type Mask = Mask8;
-
-    type Element = f64;
-
-    #[inline(always)]
-    fn splat(number: f64) -> Self {
-        Self([number; 8])
-    }
-
-    #[inline(always)]
-    fn load(from: &[f64]) -> Self {
-        Self(std::array::from_fn(|i| from[..8][i]))
-    }
-
-    #[inline(always)]
-    fn store(self, to: &mut [f64]) {
-        to[..8].copy_from_slice(&self.0);
-    }
-
-    #[inline(always)]
-    fn store_packed(self, mask: Mask8, to: &mut [f64]) {
-        let to = &mut to[..8];
-        let mut n = 0;
-        for (i, lane) in self.0.into_iter().enumerate() {
-            if mask.0 >> i & 1 != 0 {
-                to[n] = lane;
-                n += 1;
+            #[inline]
+            fn compare(self, other: Self, f: impl Fn($number, $number) -> bool) -> $mask {
+                let mut bits = 0;
+                for i in 0..$n {
+                    bits |= <$bits>::from(f(self.0[i], other.0[i])) << i;
+                }
+                $mask(bits)
             }
         }
-    }
 
-    #[inline(always)]
-    fn store_whole(self, mask: Mask8, to: &mut [u32]) {
-        let to = &mut to[..8];
-        for (i, lane) in self.0.into_iter().enumerate() {
-            if mask.0 >> i & 1 != 0 {
-                to[i] = lane as u32;
+        impl Add for $lanes {
+            type Output = Self;
+
+            #[inline]
+            fn add(self, other: Self) -> Self {
+                self.zip(other, |a, b| a + b)
             }
         }
-    }
 
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        self.map(f64::sqrt)
-    }
+        impl Sub for $lanes {
+            type Output = Self;
 
-    #[inline(always)]
-    fn floor(self) -> Self {
-        self.map(f64::floor)
-    }
+            #[inline]
+            fn sub(self, other: Self) -> Self {
+                self.zip(other, |a, b| a - b)
+            }
+        }
 
-    #[inline(always)]
-    fn abs(self) -> Self {
-        self.map(f64::abs)
-    }
+        impl Mul for $lanes {
+            type Output = Self;
 
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        self.zip(other, |a, b| if a < b { a } else { b })
-    }
+            #[inline]
+            fn mul(self, other: Self) -> Self {
+                self.zip(other, |a, b| a * b)
+            }
+        }
 
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        self.zip(other, |a, b| if a > b { a } else { b })
-    }
+        impl Div for $lanes {
+            type Output = Self;
 
-    #[inline(always)]
-    fn lt(self, other: Self) -> Mask8 {
-        self.compare(other, |a, b| a < b)
-    }
+            #[inline]
+            fn div(self, other: Self) -> Self {
+                self.zip(other, |a, b| a / b)
+            }
+        }
 
-    #[inline(always)]
-    fn le(self, other: Self) -> Mask8 {
-        self.compare(other, |a, b| a <= b)
-    }
+        impl Neg for $lanes {
+            type Output = Self;
 
-    #[inline(always)]
-    fn eq(self, other: Self) -> Mask8 {
-        self.compare(other, |a, b| a == b)
-    }
+            #[inline]
+            fn neg(self) -> Self {
+                self.map(|a| -a)
+            }
+        }
 
-    #[inline(always)]
-    fn select(mask: Mask8, yes: Self, no: Self) -> Self {
-        Self(std::array::from_fn(|i| if mask.0 >> i & 1 != 0 { yes.0[i] } else { no.0[i] }))
-    }
+        impl Numbers for $lanes {
+            const N: usize = $n;
+
+            type Mask = $mask;
+
+            type Element = $number;
+
+            #[inline]
+            fn splat(number: f64) -> Self {
+                Self([number as $number; $n])
+            }
+
+            #[inline]
+            fn load(from: &[$number]) -> Self {
+                Self(std::array::from_fn(|i| from[..$n][i]))
+            }
+
+            #[inline]
+            fn store(self, to: &mut [$number]) {
+                to[..$n].copy_from_slice(&self.0);
+            }
+
+            #[inline]
+            fn store_packed(self, mask: $mask, to: &mut [$number]) {
+                let to = &mut to[..$n];
+                let mut n = 0;
+                for (i, lane) in self.0.into_iter().enumerate() {
+                    if mask.0 >> i & 1 != 0 {
+                        to[n] = lane;
+                        n += 1;
+                    }
+                }
+            }
+
+            #[inline]
+            fn store_whole(self, mask: $mask, to: &mut [u32]) {
+                let to = &mut to[..$n];
+                for (i, lane) in self.0.into_iter().enumerate() {
+                    if mask.0 >> i & 1 != 0 {
+                        to[i] = lane as u32;
+                    }
+                }
+            }
+
+            #[inline]
+            fn sqrt(self) -> Self {
+                self.map(<$number>::sqrt)
+            }
+
+            #[inline]
+            fn floor(self) -> Self {
+                self.map(<$number>::floor)
+            }
+
+            #[inline]
+            fn abs(self) -> Self {
+                self.map(<$number>::abs)
+            }
+
+            #[inline]
+            fn min(self, other: Self) -> Self {
+                self.zip(other, |a, b| if a < b { a } else { b })
+            }
+
+            #[inline]
+            fn max(self, other: Self) -> Self {
+                self.zip(other, |a, b| if a > b { a } else { b })
+            }
+
+            #[inline]
+            fn lt(self, other: Self) -> $mask {
+                self.compare(other, |a, b| a < b)
+            }
+
+            #[inline]
+            fn le(self, other: Self) -> $mask {
+                self.compare(other, |a, b| a <= b)
+            }
+
+            #[inline]
+            fn eq(self, other: Self) -> $mask {
+                self.compare(other, |a, b| a == b)
+            }
+
+            #[inline]
+            fn select(mask: $mask, yes: Self, no: Self) -> Self {
+                Self(std::array::from_fn(|i| if mask.0 >> i & 1 != 0 { yes.0[i] } else { no.0[i] }))
+            }
+        }
+
+        impl Mask for $mask {
+            #[inline]
+            fn from_bits(bits: u32) -> Self {
+                Self(bits as $bits)
+            }
+
+            #[inline]
+            fn bits(self) -> u32 {
+                self.0.into()
+            }
+        }
+
+        impl BitAnd for $mask {
+            type Output = Self;
+
+            #[inline]
+            fn bitand(self, other: Self) -> Self {
+                Self(self.0 & other.0)
+            }
+        }
+
+        impl BitOr for $mask {
+            type Output = Self;
+
+            #[inline]
+            fn bitor(self, other: Self) -> Self {
+                Self(self.0 | other.0)
+            }
+        }
+
+        impl Not for $mask {
+            type Output = Self;
+
+            #[inline]
+            fn not(self) -> Self {
+                Self(!self.0)
+            }
+        }
+    };
 }
 
-impl Mask for Mask8 {
-    #[inline(always)]
-    fn from_bits(bits: u32) -> Self {
-        Self(bits as u8)
-    }
+pub(super) use scalar_lanes;
 
-    #[inline(always)]
-    fn bits(self) -> u32 {
-        self.0.into()
-    }
-}
-
-impl BitAnd for Mask8 {
-    type Output = Self;
-
-    #[inline(always)]
-    fn bitand(self, other: Self) -> Self {
-        Self(self.0 & other.0)
-    }
-}
-
-impl BitOr for Mask8 {
-    type Output = Self;
-
-    #[inline(always)]
-    fn bitor(self, other: Self) -> Self {
-        Self(self.0 | other.0)
-    }
-}
-
-impl Not for Mask8 {
-    type Output = Self;
-
-    #[inline(always)]
-    fn not(self) -> Self {
-        Self(!self.0)
-    }
-}
+scalar_lanes!(Lanes8: [f64; 8], Mask8: u8);
