@@ -242,3 +242,13 @@ fn a_closed_pipe_is_no_fault() {
         assert!(!stderr.contains("panicked") && !stderr.contains("cannot write"), "{stderr}");
     }
 }
+
+#[test]
+fn color_is_as_it_is_asked_for() {
+    let folder = Folder::with_scene(BAD);
+    let is_colored = |args: &[&str]| folder.clisc(args).stdout.contains('\u{1B}');
+    assert!(is_colored(&["check", "a.cli", "--color", "always"]));
+    assert!(is_colored(&["--color=always", "check", "a.cli"]), "before the command as well as behind it");
+    assert!(!is_colored(&["check", "a.cli", "--color", "never"]));
+    assert!(!is_colored(&["check", "a.cli"]), "a pipe is no terminal");
+}

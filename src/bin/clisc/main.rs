@@ -11,6 +11,7 @@ mod interrupt;
 mod outcome;
 mod print;
 mod progress;
+mod version;
 
 use std::process::ExitCode;
 
@@ -21,6 +22,7 @@ use crate::outcome::Outcome;
 
 fn main() -> ExitCode {
     let cli = Cli::parse();
+    print::decide_color(cli.color);
     run(&cli).unwrap_or_else(|error| {
         print::to_stderr(&format!("error: {error:#}\n"));
         Outcome::Environment.into()
@@ -34,5 +36,7 @@ fn run(cli: &Cli) -> anyhow::Result<ExitCode> {
         Command::Ir(args) => commands::ir::run(args),
         Command::Fmt(args) => commands::fmt::run(args),
         Command::Explain(args) => commands::explain::run(args),
+        Command::Completions(args) => commands::completions::run(args),
+        Command::Man(args) => commands::man::run(args),
     }
 }

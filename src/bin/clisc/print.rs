@@ -3,6 +3,7 @@
 //! A reader that has seen enough (`clisc ir x.cli | head`) is no fault: a broken pipe is ignored.
 
 use std::io::{self, BufWriter, ErrorKind, IsTerminal, Write};
+use std::sync::OnceLock;
 
 use anyhow::Context;
 use clisc::Compilation;
@@ -11,7 +12,7 @@ use clisc::diag::render::{Color, Format, Report, harmless};
 use clisc::diag::words::counted;
 use clisc::source::Source;
 
-use crate::args::ReportFormat;
+use crate::args::{ColorWhen, ReportFormat};
 
 /// What it means when results cannot be written.
 pub const CANNOT_WRITE: &str = "cannot write to standard output";
@@ -75,16 +76,34 @@ pub fn unlisted_to_stderr(scene: &Source, compilation: &Compilation) {
     }
 }
 
-/// Tells whether text on standard output may be coloured: it is a terminal, and `NO_COLOR` is unset or empty.
+/// What `--color` asked for; set once, before anything is printed.
+static COLOR: OnceLock<ColorWhen> = OnceLock::new();
+
+/// Takes `--color` into account from now on.
+pub fn decide_color(when: ColorWhen) {
+    let _ = COLOR.set(when);
+}
+
+/// Tells whether text on standard output is coloured.
 pub fn stdout_has_color() -> bool {
-    io::stdout().is_terminal() && environment_allows_color()
+    has_color(&io::stdout())
 }
 
-/// Tells whether text on standard error may be coloured: it is a terminal, and `NO_COLOR` is unset or empty.
+/// Tells whether text on standard error is coloured.
 pub fn stderr_has_color() -> bool {
-    io::stderr().is_terminal() && environment_allows_color()
+    has_color(&io::stderr())
 }
 
+/// Tells whether a stream is coloured: as `--color` says, else if it is a terminal and the environment does not object.
+fn has_color(stream: &impl IsTerminal) -> bool {
+    match COLOR.get().copied().unwrap_or_default() {
+        ColorWhen::Auto => stream.is_terminal() && environment_allows_color(),
+        ColorWhen::Always => true,
+        ColorWhen::Never => false,
+    }
+}
+
+/// Tells whether `NO_COLOR` is unset or empty and the terminal is not a dumb one.
 fn environment_allows_color() -> bool {
     let no_color = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
     let dumb = std::env::var_os("TERM").is_some_and(|value| value == "dumb");

@@ -1,29 +1,50 @@
 //! What the command line says: a file for each command, `image` for what several of them ask of an image.
 
 mod check;
+mod completions;
 mod explain;
 mod fmt;
 mod image;
 mod ir;
+mod man;
 mod report;
 mod run;
 
-use clap::{Parser, Subcommand};
+use clap::{Parser, Subcommand, ValueEnum};
 
 pub use check::CheckArgs;
+pub use completions::CompletionsArgs;
 pub use explain::ExplainArgs;
 pub use fmt::FmtArgs;
 pub use ir::{DumpFormat, Emit, IrArgs};
+pub use man::ManArgs;
 pub use report::ReportFormat;
 pub use run::{RunArgs, StatsFormat};
 
+use crate::version;
+
 /// Compiles and renders `.cli` scenes.
 #[derive(Debug, Parser)]
-#[command(version, arg_required_else_help = true, after_help = CLI_EXAMPLES)]
+#[command(version, long_version = version::long(), arg_required_else_help = true, after_help = CLI_EXAMPLES)]
 pub struct Cli {
     /// What to do.
     #[command(subcommand)]
     pub command: Command,
+    /// When to colour what is printed.
+    #[arg(long, global = true, value_enum, value_name = "WHEN", default_value_t)]
+    pub color: ColorWhen,
+}
+
+/// When what is printed is coloured.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum ColorWhen {
+    /// On a terminal, unless NO_COLOR is set.
+    #[default]
+    Auto,
+    /// Into files and pipes too.
+    Always,
+    /// Nowhere.
+    Never,
 }
 
 const CLI_EXAMPLES: &str = "\
@@ -49,6 +70,10 @@ pub enum Command {
     Fmt(FmtArgs),
     /// Explains a code, with a failing scene and its repair.
     Explain(ExplainArgs),
+    /// Prints the script by which a shell completes commands and options.
+    Completions(CompletionsArgs),
+    /// Prints or saves manual pages.
+    Man(ManArgs),
 }
 
 #[cfg(test)]

@@ -1,7 +1,9 @@
 //! One file a subcommand.
 
 pub mod check;
+pub mod completions;
 pub mod explain;
 pub mod fmt;
 pub mod ir;
+pub mod man;
 pub mod run;

@@ -36,6 +36,14 @@ pub fn shown(out_dir: &Path, name: &str) -> PathBuf {
     if out_dir == Path::new(".") { PathBuf::from(name) } else { out_dir.join(name) }
 }
 
+/// Saves a file as a whole or not at all; its folder is there already. Links are followed.
+pub fn save(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let target = follow_links(path)?;
+    let mut pending = PendingFile::create_in(target.parent().unwrap_or(&target))?;
+    pending.write_all(bytes)?;
+    pending.save_as(&target)
+}
+
 impl DiskSink {
     /// Makes the sink of a folder and touches nothing.
     pub fn new(out_dir: &Path) -> Self {
