@@ -11,7 +11,7 @@ const EYE_MARGIN: f64 = 1e-6;
 
 impl Sketch {
     /// Returns the scene with every item replaced by those that `replace` makes of it.
-    fn flat_map(&self, mut replace: impl FnMut(Item) -> Vec<Item>) -> Self {
+    fn flat_map(&self, replace: impl FnMut(Item) -> Vec<Item>) -> Self {
         Self { items: self.items.iter().copied().flat_map(replace).collect(), ..*self }
     }
 
