@@ -4,7 +4,8 @@
 //! of it, [`lower`] a program, the arenas and command list of [`ir`]; [`compile()`] is these steps in one call, and [`diag`]
 //! holds what they found. Behind [`ir::validate`] nothing can fail for the scene's sake: [`exec`] walks the command list,
 //! [`plan`] finds out what the image of a `write` needs, [`trace`] renders that with the numbers of [`math`], and [`image`]
-//! streams the rows into a PNG. Beside them, [`mod@format`] brings the text of a scene into its canonical form.
+//! streams the rows into a PNG. Beside them, [`mod@format`] brings the text of a scene into its canonical form, and [`ide`] answers what
+//! an editor asks.
 //!
 //! The library neither prints nor reads files nor looks at the clock; where images go and who watches are parameters.
 //!
@@ -51,6 +52,8 @@ pub mod trace;
 pub mod exec;
 
 pub mod format;
+
+pub mod ide;
 
 #[cfg(feature = "testing")]
 pub mod testing;

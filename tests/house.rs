@@ -21,6 +21,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("trace", &["ir", "plan", "math", "image"]),
     ("exec", &["ir", "plan", "trace", "image", "diag"]),
     ("format", &["source", "syntax", "lower", "exec"]),
+    ("ide", &["source", "diag", "syntax", "compile", "exec"]),
     (
         "testing",
         &["source", "diag", "math", "image", "syntax", "ir", "lower", "compile", "plan", "trace", "exec", "format"],

@@ -86,6 +86,12 @@ impl Source {
         &self.name
     }
 
+    /// Gives the text back.
+    #[must_use]
+    pub fn into_text(self) -> String {
+        self.text
+    }
+
     /// Returns the text; byte offsets in it are those of the file.
     #[must_use]
     pub fn text(&self) -> &str {

@@ -92,6 +92,14 @@ pub fn lex(source: &Source) -> Vec<Token> {
     tokens
 }
 
+/// Lexes one line of a scene. `line` is its place without its end.
+#[must_use]
+pub fn lex_one(source: &Source, line: Span) -> Vec<Token> {
+    let mut tokens = Vec::new();
+    lex_line(source.slice(line), line.start, |token| tokens.push(token));
+    tokens
+}
+
 /// A piece of text up to a line end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Line<'s> {

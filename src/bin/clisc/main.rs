@@ -8,6 +8,7 @@ mod diff;
 mod disk;
 mod input;
 mod interrupt;
+mod lsp;
 mod outcome;
 mod print;
 mod progress;
@@ -35,6 +36,7 @@ fn run(cli: &Cli) -> anyhow::Result<ExitCode> {
         Command::Run(args) => commands::run::run(args),
         Command::Ir(args) => commands::ir::run(args),
         Command::Fmt(args) => commands::fmt::run(args),
+        Command::Lsp(_) => commands::lsp::run(),
         Command::Explain(args) => commands::explain::run(args),
         Command::Completions(args) => commands::completions::run(args),
         Command::Man(args) => commands::man::run(args),

@@ -6,6 +6,7 @@ mod explain;
 mod fmt;
 mod image;
 mod ir;
+mod lsp;
 mod man;
 mod report;
 mod run;
@@ -17,6 +18,7 @@ pub use completions::CompletionsArgs;
 pub use explain::ExplainArgs;
 pub use fmt::FmtArgs;
 pub use ir::{DumpFormat, Emit, IrArgs};
+pub use lsp::LspArgs;
 pub use man::ManArgs;
 pub use report::ReportFormat;
 pub use run::{RunArgs, StatsFormat};
@@ -68,6 +70,8 @@ pub enum Command {
     Ir(IrArgs),
     /// Brings scenes into their canonical form.
     Fmt(FmtArgs),
+    /// Serves an editor: the language server.
+    Lsp(LspArgs),
     /// Explains a code, with a failing scene and its repair.
     Explain(ExplainArgs),
     /// Prints the script by which a shell completes commands and options.

@@ -5,5 +5,6 @@ pub mod completions;
 pub mod explain;
 pub mod fmt;
 pub mod ir;
+pub mod lsp;
 pub mod man;
 pub mod run;

@@ -1,0 +1,327 @@
+//! The conversation: messages in, answers out, one after the other.
+
+use std::collections::VecDeque;
+use std::io::{self, BufReader, BufWriter, Stdout, Write};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::thread;
+use std::time::Instant;
+
+use anyhow::Context;
+use clisc::diag::Diagnostic;
+use clisc::ide::diagnostics_of;
+use clisc::source::Source;
+use lsp_server::{ErrorCode, Message, Notification, Request, RequestId, Response, ResponseError};
+use lsp_types::notification::{self, Notification as _};
+use lsp_types::request::{self, Request as _};
+use lsp_types::{InitializeResult, PublishDiagnosticsParams, ServerInfo, Uri};
+use serde::de::DeserializeOwned;
+use serde_json::Value;
+
+use crate::lsp::capabilities::{Client, offered};
+use crate::lsp::convert::Places;
+use crate::lsp::documents::{Documents, Open};
+use crate::lsp::transport::{self, Frame};
+use crate::lsp::{actions, handlers, tokens};
+
+/// What reaches the server.
+enum Incoming {
+    /// From the editor.
+    Frame(Frame),
+    /// A request that the editor no longer wants an answer to.
+    Cancelled(RequestId),
+    /// From a check: what is wrong with a state of a document.
+    Found { uri: Uri, generation: u64, found: Vec<Diagnostic> },
+    /// The editor is gone.
+    End,
+}
+
+/// How far the conversation is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Stage {
+    BeforeInitialize,
+    Running,
+    ShutDown,
+}
+
+/// Serves the editor on standard input and output until it leaves; tells whether it said goodbye.
+///
+/// # Errors
+/// When standard output cannot be written.
+pub fn serve() -> anyhow::Result<bool> {
+    let (sender, receiver) = channel();
+    let from_editor = sender.clone();
+    thread::spawn(move || {
+        let mut input = BufReader::new(io::stdin().lock());
+        while let Ok(Some(frame)) = transport::read(&mut input) {
+            if from_editor.send(Incoming::Frame(frame)).is_err() {
+                return;
+            }
+        }
+        let _ = from_editor.send(Incoming::End);
+    });
+    let mut server = Server {
+        stage: Stage::BeforeInitialize,
+        client: Client::default(),
+        documents: Documents::default(),
+        sender,
+        out: BufWriter::new(io::stdout()),
+    };
+    server.run(&receiver).context("cannot write to the editor")
+}
+
+struct Server {
+    stage: Stage,
+    client: Client,
+    documents: Documents,
+    /// Given to checks, so that they can tell what they found.
+    sender: Sender<Incoming>,
+    out: BufWriter<Stdout>,
+}
+
+impl Server {
+    /// Takes what comes until the editor leaves; tells whether it said goodbye.
+    fn run(&mut self, receiver: &Receiver<Incoming>) -> io::Result<bool> {
+        let mut queue = VecDeque::new();
+        loop {
+            receiver.try_iter().for_each(|incoming| enqueue(incoming, &mut queue));
+            self.begin_due_checks();
+            let next = match queue.pop_front() {
+                Some(next) => next,
+                None => match self.wait(receiver) {
+                    Ok(incoming) => incoming,
+                    Err(RecvTimeoutError::Timeout) => continue,
+                    Err(RecvTimeoutError::Disconnected) => return Ok(false),
+                },
+            };
+            if let Some(said_goodbye) = self.take(next)? {
+                return Ok(said_goodbye);
+            }
+        }
+    }
+
+    /// Waits for what comes next, or until a check is due.
+    fn wait(&self, receiver: &Receiver<Incoming>) -> Result<Incoming, RecvTimeoutError> {
+        match self.documents.next_due() {
+            Some(due) => receiver.recv_timeout(due.saturating_duration_since(Instant::now())),
+            None => receiver.recv().map_err(RecvTimeoutError::from),
+        }
+    }
+
+    /// Takes one thing; when it is the last, tells whether the editor said goodbye.
+    fn take(&mut self, incoming: Incoming) -> io::Result<Option<bool>> {
+        match incoming {
+            Incoming::Frame(Frame::Message(Message::Request(request))) => {
+                let id = request.id.clone();
+                let answer = catch_unwind(AssertUnwindSafe(|| self.answer(request))).unwrap_or_else(|_| {
+                    Err(failure(ErrorCode::InternalError, "a bug in clisc; standard error has more"))
+                });
+                self.send(Message::Response(Response { id, response_result: answer }))?;
+            }
+            Incoming::Frame(Frame::Message(Message::Notification(notification))) => {
+                if notification.method == notification::Exit::METHOD {
+                    return Ok(Some(self.stage == Stage::ShutDown));
+                }
+                if self.stage == Stage::Running {
+                    self.note(notification)?;
+                }
+            }
+            // The server asks nothing.
+            Incoming::Frame(Frame::Message(Message::Response(_))) => {}
+            Incoming::Frame(Frame::Malformed(answer)) => {
+                transport::write(&mut self.out, answer.to_string().as_bytes())?
+            }
+            Incoming::Cancelled(id) => {
+                let error = failure(ErrorCode::RequestCanceled, "cancelled");
+                self.send(Message::Response(Response { id, response_result: Err(error) }))?;
+            }
+            Incoming::Found { uri, generation, found } => self.publish(&uri, generation, found)?,
+            Incoming::End => return Ok(Some(false)),
+        }
+        Ok(None)
+    }
+
+    fn send(&mut self, message: Message) -> io::Result<()> {
+        message.write(&mut self.out)?;
+        self.out.flush()
+    }
+
+    /// Answers a request.
+    fn answer(&mut self, request: Request) -> Result<Value, ResponseError> {
+        match (self.stage, request.method.as_str()) {
+            (Stage::BeforeInitialize, request::Initialize::METHOD) => self.initialize(&request.params),
+            (Stage::BeforeInitialize, _) => Err(failure(ErrorCode::ServerNotInitialized, "`initialize` comes first")),
+            (Stage::ShutDown, _) => Err(failure(ErrorCode::InvalidRequest, "the server has been shut down")),
+            (Stage::Running, request::Initialize::METHOD) => {
+                Err(failure(ErrorCode::InvalidRequest, "`initialize` comes once"))
+            }
+            (Stage::Running, request::Shutdown::METHOD) => {
+                self.stage = Stage::ShutDown;
+                Ok(Value::Null)
+            }
+            (Stage::Running, _) => self.answer_about_document(request),
+        }
+    }
+
+    fn initialize(&mut self, params: &Value) -> Result<Value, ResponseError> {
+        self.client = Client::new(params);
+        self.stage = Stage::Running;
+        let server_info = ServerInfo { name: "clisc".to_owned(), version: Some(env!("CARGO_PKG_VERSION").to_owned()) };
+        to_value(InitializeResult { capabilities: offered(&self.client), server_info: Some(server_info) })
+    }
+
+    fn answer_about_document(&self, Request { method, params, .. }: Request) -> Result<Value, ResponseError> {
+        match method.as_str() {
+            request::HoverRequest::METHOD => self.ask::<request::HoverRequest>(params, handlers::hover),
+            request::Completion::METHOD => self.ask::<request::Completion>(params, handlers::completion),
+            request::SignatureHelpRequest::METHOD => {
+                self.ask::<request::SignatureHelpRequest>(params, handlers::signature_help)
+            }
+            request::GotoDefinition::METHOD => self.ask::<request::GotoDefinition>(params, handlers::definition),
+            request::References::METHOD => self.ask::<request::References>(params, handlers::references),
+            request::DocumentHighlightRequest::METHOD => {
+                self.ask::<request::DocumentHighlightRequest>(params, handlers::highlights)
+            }
+            request::DocumentSymbolRequest::METHOD => {
+                self.ask::<request::DocumentSymbolRequest>(params, handlers::document_symbols)
+            }
+            request::FoldingRangeRequest::METHOD => {
+                self.ask::<request::FoldingRangeRequest>(params, handlers::folding_ranges)
+            }
+            request::InlayHintRequest::METHOD => self.ask::<request::InlayHintRequest>(params, handlers::inlay_hints),
+            request::DocumentColor::METHOD => self.ask::<request::DocumentColor>(params, handlers::document_colors),
+            request::ColorPresentationRequest::METHOD => {
+                self.ask::<request::ColorPresentationRequest>(params, handlers::color_presentations)
+            }
+            request::Formatting::METHOD => self.ask::<request::Formatting>(params, actions::formatting),
+            request::RangeFormatting::METHOD => self.ask::<request::RangeFormatting>(params, actions::range_formatting),
+            request::CodeActionRequest::METHOD => self.ask::<request::CodeActionRequest>(params, actions::code_actions),
+            request::PrepareRenameRequest::METHOD => {
+                self.ask::<request::PrepareRenameRequest>(params, actions::prepare_rename)
+            }
+            request::Rename::METHOD => self.ask::<request::Rename>(params, actions::rename),
+            request::SemanticTokensFullRequest::METHOD => {
+                self.ask::<request::SemanticTokensFullRequest>(params, tokens::full)
+            }
+            request::SemanticTokensFullDeltaRequest::METHOD => {
+                self.ask::<request::SemanticTokensFullDeltaRequest>(params, tokens::delta)
+            }
+            request::SemanticTokensRangeRequest::METHOD => {
+                self.ask::<request::SemanticTokensRangeRequest>(params, tokens::range)
+            }
+            _ => Err(failure(ErrorCode::MethodNotFound, &format!("there is no `{method}` here"))),
+        }
+    }
+
+    /// Lets a handler answer about the document that the parameters name.
+    fn ask<R: request::Request>(
+        &self,
+        params: Value,
+        handle: impl FnOnce(&Open, R::Params) -> Result<R::Result, ResponseError>,
+    ) -> Result<Value, ResponseError> {
+        let uri = params.pointer("/textDocument/uri").cloned().unwrap_or_default();
+        let uri: Uri = from_value(uri)?;
+        let params: R::Params = from_value(params)?;
+        let not_open = || failure(ErrorCode::InvalidParams, &format!("`{}` is not open", uri.as_str()));
+        let open = self.documents.get(&uri).ok_or_else(not_open)?;
+        to_value(handle(open, params)?)
+    }
+
+    /// Takes a notification. What is not understood is not answered, as the protocol has it, but told of on standard error.
+    fn note(&mut self, Notification { method, params }: Notification) -> io::Result<()> {
+        let noted = match method.as_str() {
+            notification::DidOpenTextDocument::METHOD => from_value::<lsp_types::DidOpenTextDocumentParams>(params)
+                .and_then(|params| {
+                    let opened = self.documents.open(params.text_document, self.client, Instant::now());
+                    opened.map_err(|error| failure(ErrorCode::InvalidParams, &error.to_string()))
+                }),
+            notification::DidChangeTextDocument::METHOD => from_value::<lsp_types::DidChangeTextDocumentParams>(params)
+                .and_then(|params| {
+                    let document = params.text_document;
+                    let changed =
+                        self.documents.change(&document.uri, document.version, params.content_changes, Instant::now());
+                    changed.map_err(|error| failure(ErrorCode::InvalidParams, &error.to_string()))
+                }),
+            notification::DidCloseTextDocument::METHOD => {
+                match from_value::<lsp_types::DidCloseTextDocumentParams>(params) {
+                    Ok(params) => return self.close(params.text_document.uri),
+                    Err(error) => Err(error),
+                }
+            }
+            _ => Ok(()),
+        };
+        if let Err(error) = noted {
+            crate::print::to_stderr(&format!("error: `{method}`: {}\n", error.message));
+        }
+        Ok(())
+    }
+
+    /// Closes a document and takes back what was told of it.
+    fn close(&mut self, uri: Uri) -> io::Result<()> {
+        if self.documents.close(&uri) {
+            self.tell(PublishDiagnosticsParams { uri, diagnostics: Vec::new(), version: None })?;
+        }
+        Ok(())
+    }
+
+    fn tell(&mut self, params: PublishDiagnosticsParams) -> io::Result<()> {
+        let method = notification::PublishDiagnostics::METHOD.to_owned();
+        self.send(Message::Notification(Notification::new(method, params)))
+    }
+
+    /// Begins the checks that are due, each on a thread of its own.
+    fn begin_due_checks(&mut self) {
+        while let Some(open) = self.documents.due_at(Instant::now()) {
+            open.begin_check();
+            let (uri, generation, sender) = (open.uri.clone(), open.generation, self.sender.clone());
+            let source = Source::new(open.document.source().name(), open.document.text());
+            thread::spawn(move || {
+                let found = catch_unwind(|| diagnostics_of(&source)).unwrap_or_default();
+                // The server may be gone by now.
+                let _ = sender.send(Incoming::Found { uri, generation, found });
+            });
+        }
+    }
+
+    /// Tells what a check has found, if it is about the document as it stands.
+    fn publish(&mut self, uri: &Uri, generation: u64, found: Vec<Diagnostic>) -> io::Result<()> {
+        let Some(open) = self.documents.get_mut(uri) else { return Ok(()) };
+        open.is_being_checked = false;
+        if open.generation != generation {
+            return Ok(());
+        }
+        let places = Places::new(open);
+        let diagnostics = found.iter().map(|found| places.diagnostic(found)).collect();
+        let version = Some(open.version);
+        let _ = open.found.set(found);
+        self.tell(PublishDiagnosticsParams { uri: uri.clone(), diagnostics, version })
+    }
+}
+
+/// Adds what comes to what waits. A request that is cancelled while it waits is not answered otherwise.
+fn enqueue(incoming: Incoming, queue: &mut VecDeque<Incoming>) {
+    if let Incoming::Frame(Frame::Message(Message::Notification(note))) = &incoming
+        && note.method == notification::Cancel::METHOD
+    {
+        let Ok(id) = from_value::<RequestId>(note.params.get("id").cloned().unwrap_or_default()) else { return };
+        let is_it = |waiting: &&mut Incoming| matches!(waiting, Incoming::Frame(Frame::Message(Message::Request(request))) if request.id == id);
+        if let Some(waiting) = queue.iter_mut().find(is_it) {
+            *waiting = Incoming::Cancelled(id);
+        }
+        return;
+    }
+    queue.push_back(incoming);
+}
+
+/// Makes the error of a request.
+pub fn failure(code: ErrorCode, message: &str) -> ResponseError {
+    ResponseError { code: code as i32, message: message.to_owned(), data: None }
+}
+
+fn from_value<T: DeserializeOwned>(value: Value) -> Result<T, ResponseError> {
+    serde_json::from_value(value).map_err(|error| failure(ErrorCode::InvalidParams, &error.to_string()))
+}
+
+fn to_value(value: impl serde::Serialize) -> Result<Value, ResponseError> {
+    serde_json::to_value(value).map_err(|error| failure(ErrorCode::InternalError, &error.to_string()))
+}
