@@ -33,6 +33,30 @@ fn check_lists_and_saves_nothing() {
 }
 
 #[test]
+fn check_tells_programs_what_would_change() {
+    let folder = Folder::with_scene("fov  60\n# a\n fov 50\nlight 1 1 1 0 0 5\n");
+    folder.put("b.cli", TIDY);
+    let call = folder.clisc(&["fmt", "--check", "--format", "json", "a.cli", "b.cli"]);
+    assert_eq!(call.code, Some(1));
+    let document: serde_json::Value = serde_json::from_str(&call.stdout).expect("one document");
+    let found = document["diagnostics"].as_array().expect("a list");
+    assert_eq!((found.len(), &found[0]["code"]), (2, &"F0101".into()));
+    assert_eq!(found[1]["message"], "2 lines are not in canonical form");
+    assert_eq!(found[0]["fixes"][0]["edits"][0]["replacement"], "fov   60\n");
+    let short = folder.clisc(&["fmt", "--check", "--format", "short", "a.cli", "b.cli"]);
+    assert!(
+        short.stdout.starts_with("a.cli:1:1: warning[F0101]: a line is not in canonical form\n"),
+        "{}",
+        short.stdout
+    );
+    assert_eq!(
+        folder.clisc(&["fmt", "--format", "json", "a.cli"]).code,
+        Some(2),
+        "without --check there is nothing to tell"
+    );
+}
+
+#[test]
 fn diff_is_a_patch() {
     let folder = Folder::with_scene(LOOSE);
     let call = folder.clisc(&["fmt", "--diff", "a.cli"]);

@@ -5,10 +5,10 @@ mod tree;
 
 use std::path::Path;
 
-use clisc::format::{changes_in, format};
+use clisc::format::{NOT_CANONICAL, changes_in, findings, format};
 use clisc::source::Source;
 use clisc::syntax::spec::COMMANDS;
-use clisc::testing::assert_formats_soundly;
+use clisc::testing::{assert_formats_soundly, explanation};
 use proptest::prelude::*;
 
 /// Formats a text, with its laws.
@@ -203,6 +203,18 @@ fn every_scene_is_in_form() {
         let source = Source::from_bytes("test.cli", bytes.clone()).expect("a source below 4 GiB");
         assert!(format(&source) == bytes, "{} is not formatted; run `clisc fmt scenes`", path.display());
     }
+}
+
+#[test]
+fn findings_have_a_page_and_a_fix() {
+    let page = explanation(&NOT_CANONICAL);
+    assert_eq!(page.title, format!("{}: {}", NOT_CANONICAL.id, NOT_CANONICAL.title));
+    assert_eq!(formatted(&page.failing).as_bytes(), page.repaired);
+    let source = Source::from_bytes("test.cli", page.failing).expect("a source below 4 GiB");
+    let found = findings(&source);
+    let fixed = clisc::diag::fix::apply(source.text(), found.iter().flat_map(|finding| &finding.fixes));
+    assert_eq!(fixed.text.as_bytes(), page.repaired);
+    assert_eq!(findings(&Source::new("test.cli", fixed.text)), []);
 }
 
 /// Scenes of whole commands in any layout, comments in all places, and some lines that are none.

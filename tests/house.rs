@@ -20,7 +20,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("plan", &["ir", "math", "source"]),
     ("trace", &["ir", "plan", "math", "image"]),
     ("exec", &["ir", "plan", "trace", "image", "diag"]),
-    ("format", &["source", "syntax", "lower", "exec"]),
+    ("format", &["source", "diag", "syntax", "lower", "exec"]),
     ("ide", &["source", "diag", "syntax", "compile", "exec"]),
     (
         "testing",

@@ -21,6 +21,7 @@
 
 mod columns;
 mod errors;
+mod findings;
 mod layout;
 mod lines;
 mod number;
@@ -30,6 +31,7 @@ use std::ops::Range;
 
 use crate::source::{Source, Span};
 
+pub use findings::{NOT_CANONICAL, findings};
 pub use layout::Piece;
 
 /// The longest number, in characters, for which others move: longer than any that binary64 needs.

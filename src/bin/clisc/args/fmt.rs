@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use crate::args::ReportFormat;
+
 /// Arguments of `clisc fmt`.
 #[derive(Args, Debug)]
 #[command(after_help = FMT_EXAMPLES)]
@@ -14,6 +16,9 @@ pub struct FmtArgs {
     /// Save nothing; list the scenes that would change, and exit with 1 when there are any.
     #[arg(long)]
     pub check: bool,
+    /// How --check shows what would change; without it the scenes are listed, one a line.
+    #[arg(long, value_enum, requires = "check")]
+    pub format: Option<ReportFormat>,
     /// Save nothing; show what would change, as patch reads it.
     #[arg(long)]
     pub diff: bool,
@@ -24,6 +29,8 @@ Examples:
   clisc fmt two.cli           bring a scene into its canonical form
   clisc fmt scenes            every scene below a folder
   clisc fmt scenes --check    a gate: exit code 1 when there is a scene to format
+  clisc fmt scenes --check --format sarif
+                              the same for other programs: also human, short, json, github, gitlab
   clisc fmt two.cli --diff    what would change
   clisc fmt - < a.cli         for editors: standard input to standard output
 

@@ -5,8 +5,9 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use anyhow::Context;
+use clisc::diag::Diagnostic;
 use clisc::diag::words::counted;
-use clisc::format::{changes, format};
+use clisc::format::{changes, findings, format};
 use clisc::source::Source;
 
 use crate::args::FmtArgs;
@@ -20,17 +21,24 @@ pub fn run(args: &FmtArgs) -> anyhow::Result<ExitCode> {
     let mut tally = Tally::default();
     let (scenes, missed) = input::find_all_scenes(&args.paths);
     missed.iter().for_each(|error| tally.miss(error));
+    let mut report = args.format.map(print::report).transpose()?;
     let formatted = |path: &Path| format_scene(path, args);
     input::for_each_scene(&scenes, formatted, |path, result| {
         match result {
             Ok(scene) => {
-                scene.show(path, args)?;
+                match &mut report {
+                    Some(report) => report.add(&scene.source, &scene.findings, [0; 2]).context(print::CANNOT_WRITE)?,
+                    None => scene.show(path, args)?,
+                }
                 tally.add(&scene);
             }
             Err(error) => tally.miss(&error),
         }
         Ok(())
     })?;
+    if let Some(report) = report {
+        print::finish(report)?;
+    }
     if scenes.iter().any(|path| !input::is_stdin(path)) {
         print::to_stderr(&tally.summary(args));
     }
@@ -43,6 +51,8 @@ struct Scene {
     /// Its canonical form, where that is another or is asked for.
     formatted: Vec<u8>,
     has_changed: bool,
+    /// What would change, where it is to be reported.
+    findings: Vec<Diagnostic>,
 }
 
 /// Formats a scene, and saves it unless it is only to be looked at.
@@ -55,7 +65,8 @@ fn format_scene(path: &Path, args: &FmtArgs) -> anyhow::Result<Scene> {
         let save = || disk::replace(path, &source.original_bytes(), &formatted);
         save().with_context(|| format!("cannot save `{}`", path.display()))?;
     }
-    Ok(Scene { source, formatted, has_changed })
+    let findings = if args.format.is_some() && has_changed { findings(&source) } else { Vec::new() };
+    Ok(Scene { source, formatted, has_changed, findings })
 }
 
 impl Scene {
