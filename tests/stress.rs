@@ -1,11 +1,12 @@
 //! The scenes of `scenes/stress`: what they break, counted, and that their golden images are right.
 //!
-//! Each scene says in its head how many pixels a textbook tracer gets wrong. `CLISC_BLESS=1` writes the numbers there, once
-//! the golden images exist. `CLISC_SWEEP=1` looks at all pixels instead of some.
+//! Each scene says in its head how many pixels a textbook tracer gets wrong, and `docs/stress.md` tells of all of them.
+//! `CLISC_BLESS=1` writes the numbers there, once the golden images exist. `CLISC_SWEEP=1` looks at all pixels instead of some.
 
 mod oracle;
 mod textbook;
 
+use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -21,6 +22,10 @@ use textbook::Textbook;
 /// What the line of a scene with its numbers begins with.
 const TEXTBOOK_LINE: &str = "# Textbook: ";
 
+/// The page with the table of all scenes, and the lines that stand before and behind it.
+const PAGE: &str = "docs/stress.md";
+const TABLE_ENDS: [&str; 2] = ["<!-- counted by tests/stress.rs -->\n", "<!-- end of what is counted -->\n"];
+
 /// The epsilons of the textbook tracers: those that are seen most.
 const EPSILONS: [f64; 2] = [1e-4, 1e-6];
 
@@ -35,6 +40,10 @@ struct Case {
     size: Size,
     /// Row by row from the top.
     golden: Vec<[u8; 3]>,
+}
+
+fn blesses() -> bool {
+    std::env::var_os("CLISC_BLESS").is_some_and(|value| value == "1")
 }
 
 fn root() -> &'static Path {
@@ -84,6 +93,12 @@ impl Case {
         format!("{TEXTBOOK_LINE}{coarse} of {n_pixels} pixels wrong with epsilon 1e-4, {fine} with 1e-6.")
     }
 
+    /// Returns what the scene says that it is: the comment at its head as far as its first empty line.
+    fn description(&self) -> String {
+        let lines = self.text.lines().map_while(|line| line.strip_prefix("# "));
+        lines.collect::<Vec<_>>().join(" ")
+    }
+
     /// Writes the line into the scene.
     fn bless(&self, line: &str) {
         let lines = self.text.lines().map(|old| if old.starts_with(TEXTBOOK_LINE) { line } else { old });
@@ -96,12 +111,11 @@ impl Case {
 
 #[test]
 fn a_scene_says_how_many_pixels_a_textbook_gets_wrong() {
-    let blesses = std::env::var_os("CLISC_BLESS").is_some_and(|value| value == "1");
     let mut faults = Vec::new();
     for case in cases() {
         let n_wrong = case.count_textbook_wrong();
         let line = case.textbook_line(n_wrong);
-        if blesses {
+        if blesses() {
             case.bless(&line);
         } else if !case.text.lines().any(|said| said == line) {
             faults.push(format!("{} should say\n  {line}", case.name));
@@ -111,6 +125,25 @@ fn a_scene_says_how_many_pixels_a_textbook_gets_wrong() {
         }
     }
     assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+#[test]
+fn the_page_has_every_scene() {
+    let mut table = String::from("| scene | what it is | wrong with 1e-4 | with 1e-6 |\n|---|---|---:|---:|\n");
+    for case in cases() {
+        let stem = case.name.trim_start_matches("stress/");
+        let [coarse, fine] = case.count_textbook_wrong();
+        let link = format!("[{stem}](../scenes/{}.cli)", case.name);
+        writeln!(table, "| {link} | {} | {coarse} | {fine} |", case.description()).expect("a string takes any text");
+    }
+    let page = fs::read_to_string(root().join(PAGE)).expect("the page");
+    let [start, end] = TABLE_ENDS.map(|line| page.find(line).expect("a mark around the table"));
+    let start = start + TABLE_ENDS[0].len();
+    if blesses() {
+        fs::write(root().join(PAGE), [&page[..start], &table, &page[end..]].concat()).expect("a written page");
+    } else {
+        assert!(page[start..end] == table, "{PAGE} tells something else; CLISC_BLESS=1 writes it anew");
+    }
 }
 
 /// The counts are worth something only if the textbook tracer is right where textbooks are.

@@ -24,10 +24,12 @@ mod pixel;
 mod ray;
 mod reject;
 mod shade;
+mod unrounded;
 mod wide;
 
 pub use canvas::Canvas;
 pub use counts::Counts;
+pub use unrounded::Unrounded;
 
 use std::ops::Range;
 

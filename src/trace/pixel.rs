@@ -79,6 +79,20 @@ pub fn settle<R: Real>(
     pixel: &Pixel,
     among: Candidates<'_>,
 ) -> Result<[u8; 3], Doubt> {
+    let color = mean(integrator, camera, pixel, among)?;
+    quantise(&mut integrator.judge, color)
+}
+
+/// Traces a pixel and returns its colour, the mean of its samples.
+///
+/// # Errors
+/// As [`settle`], but for the channels.
+pub fn mean<R: Real>(
+    integrator: &mut Integrator<'_, '_, R>,
+    camera: &Camera<R>,
+    pixel: &Pixel,
+    among: Candidates<'_>,
+) -> Result<Vector<R>, Doubt> {
     let n = i64::from(pixel.samples);
     let mut sum = Vector::exact(glam::DVec3::ZERO);
     for row in 0..n {
@@ -87,8 +101,7 @@ pub fn settle<R: Real>(
             sum = sum + integrator.color(ray, among)?;
         }
     }
-    let mean = if n == 1 { sum } else { sum.map(|channel| channel / R::exact((n * n) as f64)) };
-    quantise(&mut integrator.judge, mean)
+    Ok(if n == 1 { sum } else { sum.map(|channel| channel / R::exact((n * n) as f64)) })
 }
 
 /// Returns the bytes of a colour that is known exactly; `None` when binary64 cannot decide one of them.
@@ -97,7 +110,7 @@ pub fn bytes_of(color: DVec3) -> Option<[u8; 3]> {
 }
 
 /// Returns the bytes of a colour whose channels lie in 0…1.
-fn quantise<R: Real>(judge: &mut Judge, color: Vector<R>) -> Result<[u8; 3], Doubt> {
+pub fn quantise<R: Real>(judge: &mut Judge, color: Vector<R>) -> Result<[u8; 3], Doubt> {
     let mut bytes = [0; 3];
     for (byte, channel) in bytes.iter_mut().zip(color.to_array()) {
         let scaled = channel * R::exact(255.0) + R::exact(QUANTISATION_BIAS);

@@ -44,7 +44,7 @@ impl Validator<'_> {
             },
             "const" => value == rule,
             "enum" => rule.as_array().is_some_and(|values| values.contains(value)),
-            "minimum" => value.as_f64() >= rule.as_f64(),
+            "minimum" => value.as_f64().is_none_or(|number| Some(number) >= rule.as_f64()),
             "minLength" => value.as_str().is_none_or(|text| text.chars().count() as u64 >= rule.as_u64().unwrap_or(0)),
             "minItems" => value.as_array().is_none_or(|items| items.len() as u64 >= rule.as_u64().unwrap_or(0)),
             "uniqueItems" => {
@@ -86,6 +86,8 @@ fn is_of(name: &Value, value: &Value) -> bool {
         "array" => value.is_array(),
         "string" => value.is_string(),
         "integer" => value.is_i64() || value.is_u64(),
+        "number" => value.is_number(),
+        "boolean" => value.is_boolean(),
         "null" => value.is_null(),
         name => panic!("type {name} is not known here"),
     }

@@ -37,6 +37,7 @@ fn run(cli: &Cli) -> anyhow::Result<ExitCode> {
         Command::Ir(args) => commands::ir::run(args),
         Command::Fmt(args) => commands::fmt::run(args),
         Command::Lsp(_) => commands::lsp::run(),
+        Command::Bench(args) => commands::bench::run(args),
         Command::Explain(args) => commands::explain::run(args),
         Command::Completions(args) => commands::completions::run(args),
         Command::Man(args) => commands::man::run(args),

@@ -48,6 +48,8 @@ pub(super) struct Draft {
 pub(super) struct Scratch {
     /// Red + 2⁸·green + 2¹⁶·blue, row by row.
     pixels: Vec<u32>,
+    /// The channels before they became bytes, 0…255, where they are asked for.
+    pub unrounded: Option<Vec<[f32; 3]>>,
     rows: Vec<RowSphere>,
     waiting: Queue,
     next: Queue,
@@ -78,6 +80,7 @@ impl Draft {
         let capacity = if has_mirrors { TILE_PIXELS } else { 0 };
         Scratch {
             pixels: vec![0; TILE_PIXELS],
+            unrounded: None,
             rows: Vec::new(),
             waiting: Queue::new(capacity),
             next: Queue::new(capacity),
@@ -91,6 +94,12 @@ impl Draft {
         scratch.counts.eye_rays += n_pixels;
         scratch.counts.draft_pixels += n_pixels;
         scratch.pixels.fill(self.background);
+        if let Some(unrounded) = &mut scratch.unrounded {
+            let channels =
+                scene::single(plan.scene.background.to_array()).map(|channel| 255.0 * channel.clamp(0.0, 1.0));
+            unrounded.clear();
+            unrounded.resize(TILE_PIXELS, channels);
+        }
         let among = plan.tiles.candidates(rect.columns.start, rect.rows.start);
         if !among.is_empty() {
             self.backend.run_single(TileJob { draft: self, plan, sampling, rect, among, scratch });
@@ -102,6 +111,18 @@ impl Scratch {
     /// Writes the pixels of the tile that was traced into an image `width` pixels wide, whose first row is `first_row`.
     pub fn write(&self, rect: &Rect, rgb: &mut [u8], width: usize, first_row: u32) {
         crate::trace::wide::write_pixels(&self.pixels, rect, rgb, width, first_row);
+    }
+
+    /// Writes the channels of the tile that was traced, as they were before they became bytes, into those of a whole image
+    /// `width` pixels wide.
+    pub fn write_unrounded(&self, rect: &Rect, levels: &mut [[f64; 3]], width: usize) {
+        let tile = self.unrounded.as_deref().unwrap_or_default();
+        for (tile, row) in tile.chunks_exact(TILE_WIDTH).zip(rect.rows.clone()) {
+            let first = row as usize * width + rect.columns.start as usize;
+            for (level, channels) in levels[first..first + rect.columns.len()].iter_mut().zip(tile) {
+                *level = channels.map(f64::from);
+            }
+        }
     }
 }
 
@@ -197,6 +218,7 @@ impl TileJob<'_> {
             } else {
                 let bytes = shade::pack(shade::bytes(color));
                 bytes.store_whole(lanes, &mut self.scratch.pixels[place..]);
+                self.note(pixel, color, lanes);
             }
         }
     }
@@ -274,11 +296,31 @@ impl TileJob<'_> {
         }
         let (mut places, mut found) = ([0.0; MAX_LANES], [0; MAX_LANES]);
         rays.pixel.store(&mut places);
-        shade::pack(shade::bytes(mirror::compose(rays, color))).store_whole(lanes, &mut found);
+        let color = mirror::compose(rays, color);
+        shade::pack(shade::bytes(color)).store_whole(lanes, &mut found);
+        self.note(rays.pixel, color, lanes);
         while rest != 0 {
             let lane = rest.trailing_zeros() as usize;
             rest &= rest - 1;
             self.scratch.pixels[places[lane] as usize] = found[lane];
+        }
+    }
+}
+
+impl TileJob<'_> {
+    /// Keeps the colours of a packet as they are before they become bytes, if that is asked for.
+    ///
+    /// `pixel`: their places in the tile.
+    #[inline(always)]
+    fn note<L: SingleLanes>(&mut self, pixel: L, color: [L; 3], lanes: L::Mask) {
+        let Some(unrounded) = &mut self.scratch.unrounded else { return };
+        let (mut places, mut channels) = ([0.0; MAX_LANES], [[0.0; MAX_LANES]; 3]);
+        pixel.store(&mut places);
+        for (channel, lanes) in color.into_iter().zip(&mut channels) {
+            channel.store(lanes);
+        }
+        for lane in (0..L::N).filter(|lane| lanes.bits() >> lane & 1 != 0) {
+            unrounded[places[lane] as usize] = channels.map(|channel| 255.0 * channel[lane].clamp(0.0, 1.0));
         }
     }
 }

@@ -100,13 +100,31 @@ impl From<Part> for plan::Part {
 }
 
 /// Which arithmetic traces pixels.
-#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Precision {
     /// Binary64, and finer where needed: the right pixels.
     #[default]
     F64,
     /// Binary32: a draft.
     F32,
+}
+
+impl Precision {
+    /// Returns its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::F64 => "f64",
+            Self::F32 => "f32",
+        }
+    }
+
+    /// Returns its place among all, from the coarsest.
+    pub fn fineness(self) -> u32 {
+        match self {
+            Self::F32 => 0,
+            Self::F64 => 1,
+        }
+    }
 }
 
 impl From<Precision> for plan::Precision {
@@ -139,7 +157,7 @@ impl From<SampleAt> for plan::SampleAt {
 }
 
 /// Parses `WxH`; a fault explains itself.
-fn parse_size(text: &str) -> Result<Size, String> {
+pub(super) fn parse_size(text: &str) -> Result<Size, String> {
     let (width, height) = text
         .split_once(['x', 'X', '×'])
         .ok_or_else(|| "a size is width x height without spaces, such as 300x200".to_owned())?;

@@ -1,5 +1,6 @@
 //! What the command line says: a file for each command, `image` for what several of them ask of an image.
 
+mod bench;
 mod check;
 mod completions;
 mod explain;
@@ -13,10 +14,12 @@ mod run;
 
 use clap::{Parser, Subcommand, ValueEnum};
 
+pub use bench::BenchArgs;
 pub use check::CheckArgs;
 pub use completions::CompletionsArgs;
 pub use explain::ExplainArgs;
 pub use fmt::FmtArgs;
+pub use image::Precision;
 pub use ir::{DumpFormat, Emit, IrArgs};
 pub use lsp::LspArgs;
 pub use man::ManArgs;
@@ -55,6 +58,7 @@ Examples:
   clisc run i1.cli                 render i1.cli and save its images here
   clisc fmt scenes                 bring the scenes below a folder into their canonical form
   clisc ir i1.cli --emit commands  show what i1.cli was compiled to
+  clisc bench i1.cli               measure time and error of every arithmetic
   clisc explain E0203              explain a code that a message showed
 
 Exit codes: 0 fine, 1 a scene has errors, 2 wrong usage or a fault outside the scene, 130 interrupted.";
@@ -72,6 +76,8 @@ pub enum Command {
     Fmt(FmtArgs),
     /// Serves an editor: the language server.
     Lsp(LspArgs),
+    /// Measures run time against error.
+    Bench(BenchArgs),
     /// Explains a code, with a failing scene and its repair.
     Explain(ExplainArgs),
     /// Prints the script by which a shell completes commands and options.

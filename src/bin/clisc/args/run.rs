@@ -34,7 +34,7 @@ pub struct RunArgs {
 }
 
 /// The most threads to render with: more only cost, and a hundred thousand would not even start.
-const MAX_THREADS: i64 = 1024;
+pub(super) const MAX_THREADS: i64 = 1024;
 
 const RUN_EXAMPLES: &str = "\
 Examples:
