@@ -334,6 +334,8 @@ fn completion_offers_commands_values_and_names() {
     assert_eq!(colors.len(), 1);
     assert_eq!((&colors[0]["label"], &colors[0]["kind"]), (&"0.8 0.2 0.2".into(), &16.into()));
     assert_eq!(colors[0]["detail"], "red, used 2 times");
+    let in_place = offered(0, 15);
+    assert_eq!(in_place[0]["textEdit"], json!({ "range": range((0, 14), (0, 25)), "newText": "0.8 0.2 0.2" }));
     assert_eq!(offered(4, 6)[0]["textEdit"]["newText"], "\"my scene.png\"");
     assert_eq!(offered(5, 1)[0]["label"], "# clisc: off");
     assert!(offered(0, 3).iter().any(|item| item["label"] == "surface"));

@@ -92,7 +92,7 @@ fn children(node: Node<'_>) -> Vec<Node<'_>> {
 
 /// Returns the children of a node that have a field, with its name.
 fn fields(node: Node<'_>) -> impl Iterator<Item = (&str, Node<'_>)> {
-    (0..node.child_count() as u32).filter_map(move |i| Some((node.field_name_for_child(i)?, node.child(i)?)))
+    (0..node.child_count()).filter_map(move |i| Some((node.field_name_for_child(i)?, node.child(i)?)))
 }
 
 /// Returns the names and places of a command's arguments, by the names of the command table.

@@ -22,35 +22,41 @@ const FOREIGN_BLANK =
 /** What no word begins with. */
 const SEPARATOR = `#\\t\\x20${CONTROL}${FOREIGN_BLANK}`;
 
-/** The commands that take numbers, each with its arguments: a field and, for a group of three, the group's kind. */
+/** The commands that take numbers, each with its fields: a number, or a group of three. */
 const COMMANDS = {
-  fov: [['angle']],
-  background: [['color', 'color']],
-  light: [['color', 'color'], ['position', 'position']],
-  surface: [['ambient', 'color'], ['diffuse', 'color'], ['specular', 'color'], ['P'], ['Krefl']],
-  sphere: [['center', 'position'], ['radius']],
-  cylinder: [['radius'], ['x'], ['z'], ['ymin'], ['ymax']],
+  fov: { angle: 'number' },
+  background: { color: 'color' },
+  light: { color: 'color', position: 'position' },
+  surface: { ambient: 'color', diffuse: 'color', specular: 'color', P: 'number', Krefl: 'number' },
+  sphere: { center: 'position', radius: 'number' },
+  cylinder: { radius: 'number', x: 'number', z: 'number', ymin: 'number', ymax: 'number' },
 };
 
 const regex = (pattern) => new RustRegex(pattern);
 
 /** A command with all its arguments. */
-const whole = ($, name) => seq(name, ...COMMANDS[name].map(([arg, kind]) => field(arg, $[kind ?? 'number'])));
+const whole = ($, name) => seq(name, ...Object.entries(COMMANDS[name]).map(([arg, kind]) => field(arg, $[kind])));
 
-/** The first of some arguments, or none of them; not all. */
-const some = ($, [[, kind], ...others]) => {
-  const first = $[kind ?? 'number'];
-  const more = others.length > 0 ? seq(first, some($, others) ?? blank()) : undefined;
-  const part = kind === undefined ? undefined : seq($.number, optional($.number));
-  const ways = [more, part].filter((way) => way !== undefined);
-  return ways.length > 0 ? optional(choice(...ways)) : blank();
+/** The ways in which a command goes wrong: too few arguments, a wrong one, too many. */
+const spoilt = ($, name) => {
+  const kinds = Object.values(COMMANDS[name]);
+  return [
+    seq(name, beginning($, kinds), optional(seq($._no_number, repeat($._anything)))),
+    seq(name, ...kinds.map((kind) => $[kind]), repeat1($._anything)),
+  ];
 };
 
-/** A command with too few arguments, a wrong one, or too many. */
-const malformed = ($, name) => [
-  seq(name, some($, COMMANDS[name]), optional(seq($._no_number, repeat($._anything)))),
-  seq(name, ...COMMANDS[name].map(([, kind]) => $[kind ?? 'number']), repeat1($._anything)),
-];
+/** Arguments from the first on, perhaps none, but not all. */
+const beginning = ($, [first, ...others]) => {
+  const ways = [];
+  if (others.length > 0) {
+    ways.push(seq($[first], beginning($, others)));
+  }
+  if (first !== 'number') {
+    ways.push(seq($.number, optional($.number)));
+  }
+  return ways.length > 0 ? optional(choice(...ways)) : blank();
+};
 
 module.exports = grammar({
   name: 'clisc',
@@ -88,7 +94,7 @@ module.exports = grammar({
     malformed: ($) =>
       choice(
         seq(choice($.number, $.word, $.foreign), repeat($._anything)),
-        ...Object.keys(COMMANDS).flatMap((name) => malformed($, name)),
+        ...Object.keys(COMMANDS).flatMap((name) => spoilt($, name)),
         seq('write', optional(seq($._no_name, repeat($._any_name)))),
         seq('write', choice($.bare_name, $.quoted_name), repeat1($._any_name)),
       ),

@@ -64,7 +64,7 @@ pub fn completions(document: &Document, offset: u32) -> Vec<Completion> {
     match command.arguments {
         Arguments::FileName(_) if index == 0 => file_names(document, span),
         Arguments::FileName(_) => Vec::new(),
-        Arguments::Numbers(_) => values(document, command, index, span),
+        Arguments::Numbers(_) => values(document, command, index, rest_of_group(&line, command, index, span)),
     }
 }
 
@@ -84,6 +84,15 @@ fn command_completion(command: &'static CommandSpec, span: Span) -> Completion {
         text: format!("{} ", command.name),
         snippet: Some(snippet),
     }
+}
+
+/// Returns what a value in place of the word below `span` replaces: of a line that has all its numbers, the rest of the
+/// group, so that as many come as go.
+fn rest_of_group(line: &LineAt, command: &CommandSpec, index: usize, span: Span) -> Span {
+    let args = line.args();
+    let is_whole = args.len() == command.numbers().len() && args.get(index) == Some(&span);
+    let group = command.grouped().find(|(numbers, _)| is_whole && numbers.contains(&index));
+    group.map_or(span, |(numbers, _)| span.to(args[numbers.end - 1]))
 }
 
 /// Returns the values that other commands of this kind have from argument `index` to the end of its group, the most

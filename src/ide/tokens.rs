@@ -6,6 +6,9 @@ use crate::source::Span;
 use crate::syntax::TokenKind;
 use crate::syntax::spec;
 
+/// The most tokens of an answer, some twenty thousand lines: editors ask for whole scenes and take apart what they get.
+const MAX_TOKENS: usize = 100_000;
+
 /// What a token is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SemanticKind {
@@ -33,12 +36,16 @@ pub struct SemanticToken {
     pub kind: SemanticKind,
 }
 
-/// Returns the tokens of the lines that `span` touches, in order. What went wrong has no kind.
+/// Returns the tokens of the lines that `span` touches, in order, as far as an editor can use them. What went wrong has no
+/// kind.
 #[must_use]
 pub fn semantic_tokens(document: &Document, span: Span) -> Vec<SemanticToken> {
     let (lines, text) = (document.lines(), document.text());
     let mut tokens = Vec::new();
     for line in lines.line_of(span.start)..=lines.line_of(span.end) {
+        if tokens.len() >= MAX_TOKENS {
+            break;
+        }
         let line = LineAt::new(document, lines.start(text, line));
         let name = line.name();
         tokens.extend(line.tokens.iter().filter_map(|token| {

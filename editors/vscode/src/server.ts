@@ -1,6 +1,5 @@
 // The language server, `clisc lsp`, which knows everything that this extension says about a scene.
 
-import * as vscode from 'vscode';
 import { LanguageClient, type LanguageClientOptions, type ServerOptions } from 'vscode-languageclient/node';
 import { program, reportMissing } from './program';
 
@@ -35,7 +34,6 @@ export class Server {
         { scheme: 'file', language: 'clisc' },
         { scheme: 'untitled', language: 'clisc' },
       ],
-      synchronize: { fileEvents: vscode.workspace.createFileSystemWatcher('**/clisc.toml') },
     };
     try {
       this.client = new LanguageClient('clisc', 'clisc', server, client);

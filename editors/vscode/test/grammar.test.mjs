@@ -4,8 +4,9 @@
 
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { readFileSync, readdirSync } from 'node:fs';
+import { mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
+import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { before, test } from 'node:test';
 import { fileURLToPath } from 'node:url';
@@ -20,8 +21,11 @@ const SCENES = ['scenes', 'tests/fixtures', 'fuzz/seeds'];
 /** Errors that lack something, at which no word is wrong, and those of numbers that are too large. */
 const WITHOUT_WRONG_WORD = ['E0203', 'E0207', 'E0208'];
 
+/** What is put into lines to spoil them, or not. */
+const PIECES = ['', '', '', ' ', '\t', '1', '.', '-', 'e5', 'x', ',', '#', '"', '.png', ' write ', '\u00A0', '\u3000', '\u0085', '\0', 'π', '😀'];
+
 let grammar;
-/** Every scene: its name, its lines, and what clisc says of it. */
+/** What is said of every scene of the project. */
 let scenes;
 
 before(async () => {
@@ -35,14 +39,7 @@ before(async () => {
     loadGrammar: async () => textmate.parseRawGrammar(readFileSync(GRAMMAR, 'utf8'), GRAMMAR),
   });
   grammar = await registry.loadGrammar('source.clisc');
-  const all = files();
-  const { diagnostics } = clisc('check', ...all.map(({ name }) => name), '--format', 'json');
-  scenes = all.map(({ name, bytes }) => ({
-    name,
-    lines: tokenize(bytes.toString('utf8')),
-    commands: clisc('ir', name, '--emit', 'ast', '--format', 'json').commands,
-    diagnostics: diagnostics.filter(({ path }) => path === name),
-  }));
+  scenes = said(files());
 });
 
 /** Returns the lines of a scene as an editor has them, each with its place in bytes and its tokens. */
@@ -66,15 +63,29 @@ function tokenize(text) {
   });
 }
 
-/** Returns every scene that an editor shows as it is: UTF-8, and without lone carriage returns. */
+/** Returns the paths of the scenes that an editor shows as they are: UTF-8, and without lone carriage returns. */
 function files() {
   const paths = SCENES.flatMap((folder) =>
     readdirSync(path.join(ROOT, folder), { recursive: true })
       .filter((name) => name.endsWith('.cli'))
       .map((name) => path.join(ROOT, folder, name)),
   );
-  const isText = (bytes) => Buffer.from(bytes.toString('utf8')).equals(bytes) && !/\r(?!\n)|^.?\0/.test(bytes.toString('utf8'));
-  return paths.map((name) => ({ name, bytes: readFileSync(name) })).filter(({ bytes }) => isText(bytes));
+  return paths.filter((name) => {
+    const bytes = readFileSync(name);
+    const text = bytes.toString('utf8');
+    return Buffer.from(text).equals(bytes) && !/\r(?!\n)|^.?\0/.test(text);
+  });
+}
+
+/** Returns for each scene its name, its lines as the grammar sees them, and its commands and diagnostics by clisc. */
+function said(names) {
+  const { diagnostics } = clisc('check', ...names, '--format', 'json');
+  return names.map((name) => ({
+    name,
+    lines: tokenize(readFileSync(name, 'utf8')),
+    commands: clisc('ir', name, '--emit', 'ast', '--format', 'json').commands,
+    diagnostics: diagnostics.filter(({ path }) => path === name),
+  }));
 }
 
 /** Returns what `clisc` prints as JSON; scenes with errors make it exit with 1. */
@@ -111,36 +122,74 @@ function checkCommand(name, command, line) {
   return args.length;
 }
 
-test('every argument has the scope of its name', () => {
+/** Checks every command of a scene without a mistake; returns how many arguments there are. */
+function checkArguments({ name, lines, commands, diagnostics }) {
   let n = 0;
-  for (const { name, lines, commands, diagnostics } of scenes) {
-    for (const command of commands.filter(({ bad }) => !bad)) {
-      const line = lines.find(({ end }) => end > command.span.start);
-      if (codesOf(line, diagnostics).length === 0) {
-        n += checkCommand(name, command, line);
-      }
+  for (const command of commands.filter(({ bad }) => !bad)) {
+    const line = lines.find(({ end }) => end > command.span.start);
+    if (codesOf(line, diagnostics).length === 0) {
+      n += checkCommand(name, command, line);
     }
   }
+  return n;
+}
+
+/** Checks that words are invalid on the lines that clisc finds wrong, and there alone; returns how many lines that are. */
+function checkInvalid({ name, lines, diagnostics }) {
+  let n = 0;
+  for (const line of lines) {
+    const codes = codesOf(line, diagnostics);
+    const words = line.tokens.filter(isInvalid).map(({ text }) => text);
+    const at = `${name}: ${JSON.stringify(line.tokens.map(({ text }) => text).join(''))}`;
+    if (words.length > 0) {
+      assert.notEqual(codes.length, 0, `${at}: clisc has nothing against ${words}`);
+      n += 1;
+    } else {
+      assert.ok(codes.every((code) => WITHOUT_WRONG_WORD.includes(code)), `${at}: clisc says ${codes}`);
+    }
+  }
+  return n;
+}
+
+const sum = (numbers) => numbers.reduce((total, number) => total + number, 0);
+
+test('every argument has the scope of its name', () => {
+  const n = sum(scenes.map(checkArguments));
   assert.ok(n > 3000, `${n} arguments`);
 });
 
 test('a word is invalid where clisc says so', () => {
-  let n = 0;
-  for (const { name, lines, diagnostics } of scenes) {
-    for (const line of lines) {
-      const codes = codesOf(line, diagnostics);
-      const words = line.tokens.filter(isInvalid).map(({ text }) => text);
-      const at = `${name}: ${line.tokens.map(({ text }) => text).join('')}`;
-      if (words.length > 0) {
-        assert.notEqual(codes.length, 0, `${at}: clisc has nothing against ${words}`);
-        n += 1;
-      } else {
-        assert.ok(codes.every((code) => WITHOUT_WRONG_WORD.includes(code)), `${at}: clisc says ${codes}`);
-      }
-    }
-  }
+  const n = sum(scenes.map(checkInvalid));
   assert.ok(n > 100, `${n} lines with a wrong word`);
 });
+
+test('both hold on lines that are nearly right', (t) => {
+  const folder = mkdtempSync(path.join(tmpdir(), 'clisc-'));
+  t.after(() => rmSync(folder, { recursive: true }));
+  const name = path.join(folder, 'nearly.cli');
+  writeFileSync(name, nearlyRight(4000));
+  const [scene] = said([name]);
+  const [nArguments, nInvalid] = [checkArguments(scene), checkInvalid(scene)];
+  assert.ok(nArguments > 2000 && nInvalid > 1000, `${nArguments} arguments, ${nInvalid} lines with a wrong word`);
+});
+
+/** Returns this many lines of the scenes, most of them with a piece put in or taken out; the same at every call. */
+function nearlyRight(n) {
+  const lines = scenes.flatMap(({ lines }) => lines.map(({ tokens }) => tokens.map(({ text }) => text).join('')));
+  const commands = lines.filter((line) => /^\s*[a-z]/.test(line));
+  let state = 1;
+  // A linear congruence; its high bits are good enough to choose by.
+  const below = (bound) => {
+    state = (Math.imul(state, 1664525) + 1013904223) >>> 0;
+    return Math.floor((state / 2 ** 32) * bound);
+  };
+  const changed = () => {
+    const line = commands[below(commands.length)];
+    const at = below(line.length + 1);
+    return line.slice(0, at) + PIECES[below(PIECES.length)] + line.slice(at + below(3));
+  };
+  return Array.from({ length: n }, changed).join('\n');
+}
 
 test('a comment is one, and nothing in it is a word', () => {
   for (const text of ['# sphere 1 2 3', 'fov 60# sphere', '  # a', 'write a#b.png #c', 'write "a.png"#b', 'sphere x #y']) {

@@ -100,6 +100,11 @@ impl Documents {
         open.document.change(changes.collect(), open.client.unit)
     }
 
+    /// Lets every document be checked again: something beside it has changed.
+    pub fn recheck(&mut self, now: Instant) {
+        self.by_uri.values_mut().for_each(|open| open.due = Some(now));
+    }
+
     /// Closes a document and tells whether it was open.
     pub fn close(&mut self, uri: &Uri) -> bool {
         self.by_uri.remove(uri.as_str()).is_some()

@@ -1,5 +1,6 @@
 //! The conversation: messages in, answers out, one after the other.
 
+use std::cell::OnceCell;
 use std::collections::VecDeque;
 use std::io::{self, BufReader, BufWriter, Stdout, Write};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -248,6 +249,10 @@ impl Server {
                     Err(error) => Err(error),
                 }
             }
+            notification::DidChangeConfiguration::METHOD | notification::DidChangeWatchedFiles::METHOD => {
+                self.documents.recheck(Instant::now());
+                Ok(())
+            }
             _ => Ok(()),
         };
         if let Err(error) = noted {
@@ -293,7 +298,7 @@ impl Server {
         let places = Places::new(open);
         let diagnostics = found.iter().map(|found| places.diagnostic(found)).collect();
         let version = Some(open.version);
-        let _ = open.found.set(found);
+        open.found = OnceCell::from(found);
         self.tell(PublishDiagnosticsParams { uri: uri.clone(), diagnostics, version })
     }
 }
@@ -324,4 +329,31 @@ fn from_value<T: DeserializeOwned>(value: Value) -> Result<T, ResponseError> {
 
 fn to_value(value: impl serde::Serialize) -> Result<Value, ResponseError> {
     serde_json::to_value(value).map_err(|error| failure(ErrorCode::InternalError, &error.to_string()))
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    #[test]
+    fn a_request_that_waits_can_be_cancelled() {
+        let request = |id: i32| Message::Request(Request::new(RequestId::from(id), "clisc/x".to_owned(), Value::Null));
+        let cancel =
+            |id: Value| Message::Notification(Notification::new("$/cancelRequest".to_owned(), json!({ "id": id })));
+        let mut queue = VecDeque::new();
+        for message in [request(1), request(2), cancel(json!(2)), cancel(json!(9)), cancel(json!([])), request(3)] {
+            enqueue(Incoming::Frame(Frame::Message(message)), &mut queue);
+        }
+        let waiting: Vec<_> = queue
+            .iter()
+            .map(|incoming| match incoming {
+                Incoming::Frame(Frame::Message(Message::Request(request))) => (request.id.to_string(), false),
+                Incoming::Cancelled(id) => (id.to_string(), true),
+                _ => panic!("a cancellation is no work"),
+            })
+            .collect();
+        assert_eq!(waiting, [("1".to_owned(), false), ("2".to_owned(), true), ("3".to_owned(), false)]);
+    }
 }
