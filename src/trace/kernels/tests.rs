@@ -107,11 +107,37 @@ fn every_backend_gives_the_same_bits() {
         let wide = EveryOperation { a: &wide_a, b: &wide_b, bits };
         let single = EveryOperation { a: &single_a, b: &single_b, bits };
         let (of_wide, of_single) = (Backend::Scalar.run(wide), Backend::Scalar.run_single(single));
+        let of_pair = wide.all::<pair::Pair<scalar::Lanes8>>();
         for backend in Backend::ALL.into_iter().filter(|backend| backend.is_available()) {
             let name = backend.name();
             assert_eq!(backend.run(wide), of_wide, "{name}: {wide_a:?} {wide_b:?} {bits:b}");
+            let of_twofold = if backend == Backend::Avx512 { &of_pair } else { &of_wide };
+            assert_eq!(&backend.run_twofold(wide), of_twofold, "{name}: {wide_a:?} {wide_b:?} {bits:b}");
             assert_eq!(backend.run_single(single), of_single, "{name}: {single_a:?} {single_b:?} {bits:b}");
         }
+    }
+}
+
+#[test]
+fn a_pair_is_its_lanes_side_by_side() {
+    type Sixteen = pair::Pair<scalar::Lanes8>;
+    let mut stream = Stream::new(12);
+    for _ in 0..1000 {
+        let [a, b] = [(); 2].map(|()| [(); 16].map(|()| (stream.unit() * 4.0).floor()));
+        let bits = stream.below(1 << 16) as u32;
+        let chosen = |k: &usize| bits >> k & 1 != 0;
+        let mask = <Sixteen as Numbers>::Mask::from_bits(bits);
+        let (mut sums, mut packed, mut whole) = ([0.0; 16], [0.0; 16], [9; 16]);
+        (Sixteen::load(&a) + Sixteen::load(&b)).store(&mut sums);
+        Sixteen::load(&a).store_packed(mask, &mut packed);
+        Sixteen::load(&a).store_whole(mask, &mut whole);
+        assert_eq!(sums, std::array::from_fn(|k| a[k] + b[k]));
+        let kept: Vec<_> = (0..16).filter(chosen).map(|k| a[k]).collect();
+        assert_eq!(packed[..kept.len()], kept);
+        assert_eq!(whole, std::array::from_fn(|k| if chosen(&k) { a[k] as u32 } else { 9 }));
+        let less = (0..16).filter(|&k| a[k] < b[k]).fold(0, |less, k| less | 1 << k);
+        assert_eq!(Sixteen::load(&a).lt(Sixteen::load(&b)).bits(), less);
+        assert_eq!((mask.bits(), mask.any(), (!mask).bits()), (bits, bits != 0, !bits & 0xffff));
     }
 }
 

@@ -7,6 +7,7 @@ mod single;
 use std::arch::x86_64::*;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
+use crate::trace::kernels::pair::Pair;
 use crate::trace::kernels::{Job, Mask, Numbers, SingleJob};
 
 /// Tells whether the machine has the instructions.
@@ -21,6 +22,12 @@ pub(super) fn is_available() -> bool {
 #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx512bw")]
 pub(super) fn run<J: Job>(job: J) -> J::Output {
     job.run::<Lanes8>()
+}
+
+/// Carries out a job on two of these lanes side by side: there are registers enough for much of two packets.
+#[target_feature(enable = "avx512f,avx512dq,avx512vl,avx512bw")]
+pub(super) fn run_twofold<J: Job>(job: J) -> J::Output {
+    job.run::<Pair<Lanes8>>()
 }
 
 /// Carries out a job on binary32 lanes of this kind.
