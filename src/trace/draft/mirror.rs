@@ -1,7 +1,8 @@
 //! Reflected rays, and what becomes of the colours they find.
 
+use crate::trace::draft::TILE_PIXELS;
 use crate::trace::draft::meet::{Reflected, dot, plus_times, times};
-use crate::trace::draft::shade::{Points, bytes};
+use crate::trace::draft::shade::{Points, byte};
 use crate::trace::kernels::{Mask, SingleLanes};
 
 /// The most lanes that a packet has.
@@ -24,18 +25,52 @@ pub(super) struct Rays<L: SingleLanes> {
 /// How many numbers there are for each ray.
 const N_NUMBERS: usize = 16;
 
+/// Packets are written and read as a whole, whatever number of rays is in them.
+const CAPACITY: usize = TILE_PIXELS + 2 * MAX_LANES;
+
+/// One of the numbers of every ray.
+#[derive(Clone, Debug)]
+#[repr(align(64))]
+struct Column([f32; CAPACITY]);
+
 /// Rays that wait to be traced, number by number.
 #[derive(Clone, Debug)]
 pub(super) struct Queue {
+    /// Whether every mirror gives all three channels the same, so that A and H of the first stand for all.
+    is_grey: bool,
     len: usize,
-    numbers: [Vec<f32>; N_NUMBERS],
+    numbers: Box<[Column]>,
+}
+
+/// Carries out `$put` for each number of a packet, with its place and its name.
+macro_rules! for_each_number {
+    ($is_grey:expr, $rays:expr, $put:ident) => {
+        $put!(0, $rays.path.origin[0]);
+        $put!(1, $rays.path.origin[1]);
+        $put!(2, $rays.path.origin[2]);
+        $put!(3, $rays.path.dir[0]);
+        $put!(4, $rays.path.dir[1]);
+        $put!(5, $rays.path.dir[2]);
+        $put!(6, $rays.path.leaving);
+        $put!(7, $rays.path.equation);
+        $put!(8, $rays.weight);
+        $put!(9, $rays.pixel);
+        $put!(10, $rays.sum[0]);
+        $put!(11, $rays.ceiling[0]);
+        if !$is_grey {
+            $put!(12, $rays.sum[1]);
+            $put!(13, $rays.sum[2]);
+            $put!(14, $rays.ceiling[1]);
+            $put!(15, $rays.ceiling[2]);
+        }
+    };
 }
 
 impl Queue {
-    /// Makes a queue for as many rays.
-    pub fn new(capacity: usize) -> Self {
-        // Packets are written and read as a whole, whatever number of rays is in them.
-        Self { len: 0, numbers: std::array::from_fn(|_| vec![0.0; capacity + 2 * MAX_LANES]) }
+    /// Makes a queue; with room for rays if there are mirrors.
+    pub fn new(has_mirrors: bool, is_grey: bool) -> Self {
+        let n_numbers = if has_mirrors { N_NUMBERS } else { 0 };
+        Self { is_grey, len: 0, numbers: vec![Column([0.0; CAPACITY]); n_numbers].into() }
     }
 
     /// Returns how many rays there are.
@@ -51,29 +86,51 @@ impl Queue {
     /// Adds the rays of the mask.
     #[inline(always)]
     pub fn push<L: SingleLanes>(&mut self, rays: &Rays<L>, mask: L::Mask) {
-        let ([ox, oy, oz], [dx, dy, dz]) = (rays.path.origin, rays.path.dir);
-        let ([ar, ag, ab], [hr, hg, hb]) = (rays.sum, rays.ceiling);
-        let (leaving, equation) = (rays.path.leaving, rays.path.equation);
-        let numbers: [L; N_NUMBERS] =
-            [ox, oy, oz, dx, dy, dz, leaving, equation, ar, ag, ab, hr, hg, hb, rays.weight, rays.pixel];
-        for (lanes, to) in numbers.into_iter().zip(&mut self.numbers) {
-            lanes.store_packed(mask, &mut to[self.len..]);
+        let n_rays = mask.bits().count_ones() as usize;
+        let end = self.len;
+        assert!(end + L::N <= CAPACITY && self.numbers.len() == N_NUMBERS);
+        if n_rays == L::N {
+            macro_rules! put {
+                ($place:literal, $lanes:expr) => {
+                    $lanes.store(&mut self.numbers[$place].0[end..]);
+                };
+            }
+            for_each_number!(self.is_grey, rays, put);
+        } else {
+            macro_rules! put {
+                ($place:literal, $lanes:expr) => {
+                    $lanes.store_packed(mask, &mut self.numbers[$place].0[end..]);
+                };
+            }
+            for_each_number!(self.is_grey, rays, put);
         }
-        self.len += mask.bits().count_ones() as usize;
+        self.len += n_rays;
     }
 
-    /// Returns the packet from this ray on, and which of its lanes hold a ray.
+    /// Returns where the packet from this ray on goes.
     #[inline(always)]
-    pub fn packet<L: SingleLanes>(&self, first: usize) -> (Rays<L>, L::Mask) {
-        let mut numbers = [L::same(0.0); N_NUMBERS];
-        for (lanes, from) in numbers.iter_mut().zip(&self.numbers) {
-            *lanes = L::load(&from[first..]);
-        }
-        let [ox, oy, oz, dx, dy, dz, leaving, equation, ar, ag, ab, hr, hg, hb, weight, pixel] = numbers;
-        let path = Reflected { origin: [ox, oy, oz], dir: [dx, dy, dz], leaving, equation };
-        let rays = Rays { path, sum: [ar, ag, ab], ceiling: [hr, hg, hb], weight, pixel };
+    pub fn path<L: SingleLanes>(&self, first: usize) -> Reflected<L> {
+        let get = |place: usize| L::load(&self.numbers[place].0[first..]);
+        Reflected { origin: [get(0), get(1), get(2)], dir: [get(3), get(4), get(5)], leaving: get(6), equation: get(7) }
+    }
+
+    /// Returns which lanes of the packet from this ray on hold one.
+    #[inline(always)]
+    pub fn lanes<L: SingleLanes>(&self, first: usize) -> L::Mask {
         let n_rays = (self.len - first).min(L::N);
-        (rays, L::Mask::from_bits((1 << n_rays) - 1))
+        L::Mask::from_bits((1 << n_rays) - 1)
+    }
+
+    /// Returns the packet from this ray on.
+    #[inline(always)]
+    pub fn packet<L: SingleLanes>(&self, first: usize) -> Rays<L> {
+        let get = |place: usize| L::load(&self.numbers[place].0[first..]);
+        let (sum, ceiling) = if self.is_grey {
+            ([get(10); 3], [get(11); 3])
+        } else {
+            ([get(10), get(12), get(13)], [get(11), get(14), get(15)])
+        };
+        Rays { path: self.path(first), sum, ceiling, weight: get(8), pixel: get(9) }
     }
 }
 
@@ -111,10 +168,19 @@ pub(super) fn reflect<L: SingleLanes>(
     let path =
         Reflected { origin: at.point, dir, leaving: L::same(mirror.leaving), equation: L::same(mirror.equation) };
     let reflected = Rays { path, sum, ceiling, weight, pixel: rays.pixel };
-    let (zero, one) = (L::same(0.0), L::same(1.0));
-    let (least, most) = (bytes(compose(&reflected, [zero; 3])), bytes(compose(&reflected, [one; 3])));
-    let is_settled = least[0].eq(most[0]) & least[1].eq(most[1]) & least[2].eq(most[2]);
+    // A first channel that may still change is enough.
+    let mut is_settled = is_channel_settled(&reflected, 0);
+    if is_settled.any() {
+        is_settled = is_settled & is_channel_settled(&reflected, 1) & is_channel_settled(&reflected, 2);
+    }
     (reflected, !is_settled)
+}
+
+/// Tells in which pixels a channel is the same byte whatever the rays find.
+#[inline(always)]
+fn is_channel_settled<L: SingleLanes>(rays: &Rays<L>, k: usize) -> L::Mask {
+    let (sum, ceiling) = (rays.sum[k], rays.ceiling[k]);
+    byte(sum.min(ceiling)).eq(byte((sum + rays.weight).min(ceiling)))
 }
 
 /// Returns the colour of the pixels whose last rays found `color`.

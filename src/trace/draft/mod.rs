@@ -76,14 +76,14 @@ impl Draft {
 
     /// Makes what a thread needs.
     pub fn scratch(&self) -> Scratch {
-        let has_mirrors = self.scene.surfaces.iter().any(|surface| surface.reflectance > 0.0);
-        let capacity = if has_mirrors { TILE_PIXELS } else { 0 };
+        let mirrors = || self.scene.surfaces.iter().filter(|surface| surface.reflectance > 0.0);
+        let (has_mirrors, is_grey) = (mirrors().next().is_some(), mirrors().all(|mirror| mirror.is_grey));
         Scratch {
             pixels: vec![0; TILE_PIXELS],
             unrounded: None,
             rows: Vec::new(),
-            waiting: Queue::new(capacity),
-            next: Queue::new(capacity),
+            waiting: Queue::new(has_mirrors, is_grey),
+            next: Queue::new(has_mirrors, is_grey),
             counts: Counts::default(),
         }
     }
@@ -148,7 +148,7 @@ impl SingleJob for TileJob<'_> {
             std::mem::swap(&mut self.scratch.waiting, &mut self.scratch.next);
             self.scratch.waiting.clear();
             for first in (0..self.scratch.next.len()).step_by(L::N) {
-                let (rays, active) = self.scratch.next.packet::<L>(first);
+                let (rays, active) = (self.scratch.next.packet::<L>(first), self.scratch.next.lanes::<L>(first));
                 self.follow(&rays, active, level);
             }
             level += 1;

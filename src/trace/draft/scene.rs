@@ -81,6 +81,8 @@ pub(super) struct Surface {
     pub min_squared: f32,
     /// 0 when nothing is reflected.
     pub reflectance: f32,
+    /// Whether a hit's own colour is the same in all channels.
+    pub is_grey: bool,
 }
 
 /// How (n·H)^P is computed from (n·H)².
@@ -110,7 +112,7 @@ impl DraftScene {
         if !is_moderate(scene) {
             return None;
         }
-        let surfaces: Vec<_> = scene.surfaces.iter().map(|s| surface(s, plan.settings.part)).collect();
+        let surfaces: Vec<_> = scene.surfaces.iter().map(|s| surface(s, scene, plan.settings.part)).collect();
         if scene.surfaces.iter().zip(&surfaces).any(|(s, draft)| draft.reflectance > 0.0 && has_negative(s, scene)) {
             return None;
         }
@@ -165,7 +167,15 @@ fn has_negative(surface: &ir::Surface, scene: &Scene<'_>) -> bool {
             .any(|l| is_negative(l.color * surface.diffuse) || is_negative(l.color * surface.specular))
 }
 
-fn surface(surface: &ir::Surface, part: Part) -> Surface {
+/// Tells whether a surface has the same colour in all channels, whatever light falls on it.
+fn is_grey(surface: &ir::Surface, scene: &Scene<'_>) -> bool {
+    let is_grey = |color: glam::DVec3| color.x == color.y && color.y == color.z;
+    is_grey(surface.ambient)
+        && (scene.lights.iter())
+            .all(|light| is_grey(light.color * surface.diffuse) && is_grey(light.color * surface.specular))
+}
+
+fn surface(surface: &ir::Surface, scene: &Scene<'_>, part: Part) -> Surface {
     let is_b = part == Part::B;
     let shininess = surface.shininess;
     let power = if shininess.fract() == 0.0 {
@@ -179,6 +189,7 @@ fn surface(surface: &ir::Surface, part: Part) -> Surface {
         power,
         min_squared: libm::exp2(2.0 * MIN_POWER_EXPONENT / shininess.max(2.0)) as f32,
         reflectance: if is_b { surface.reflectance.max(0.0) as f32 } else { 0.0 },
+        is_grey: is_grey(surface, scene),
     }
 }
 

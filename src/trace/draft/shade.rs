@@ -103,12 +103,13 @@ fn raise_each(numbers: &mut [f32], exponent: f32, bits: u32) {
 /// Returns the bytes of channels, clamped, as whole numbers.
 #[inline(always)]
 pub(super) fn bytes<L: SingleLanes>(color: [L; 3]) -> [L; 3] {
-    let (zero, one, scale, bias) = (L::same(0.0), L::same(1.0), L::same(255.0), L::same(QUANTISATION_BIAS));
-    [
-        (color[0].min(one).max(zero) * scale + bias).floor(),
-        (color[1].min(one).max(zero) * scale + bias).floor(),
-        (color[2].min(one).max(zero) * scale + bias).floor(),
-    ]
+    [byte(color[0]), byte(color[1]), byte(color[2])]
+}
+
+/// Returns the byte of a channel, clamped, as a whole number.
+#[inline(always)]
+pub(super) fn byte<L: SingleLanes>(channel: L) -> L {
+    (channel.min(L::same(1.0)).max(L::same(0.0)) * L::same(255.0) + L::same(QUANTISATION_BIAS)).floor()
 }
 
 /// Returns bytes as red + 2⁸·green + 2¹⁶·blue.
