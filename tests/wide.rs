@@ -5,6 +5,7 @@ mod families;
 use clisc::ir::{self, Registers, SceneView};
 use clisc::plan::{Part, SampleAt, Settings, Size, plan};
 use clisc::source::Source;
+use clisc::testing::Stream;
 use clisc::trace::kernels::Backend;
 use clisc::trace::{Counts, Tracer};
 
@@ -117,6 +118,54 @@ fn for_every_scene(mut visit: impl FnMut(&str, SceneView<'_>)) {
 fn packets_give_the_settled_pixels_of_every_scene() {
     let mut failures = Vec::new();
     for_every_scene(|title, view| failures.extend(differences(title, view, &sized(128, 96))));
+    assert_none(&failures);
+}
+
+/// Balls on a lattice that touch, overlap by a rounding or stand apart, as mirrors of grey or of colours, at times on a
+/// mirror of another shape.
+fn cluster(stream: &mut Stream) -> String {
+    let mut any = |low: f64, high: f64| stream.between(low, high);
+    let (turn, spacing, is_grey) = (any(0.0, 3.0), any(0.5, 2.0), any(0.0, 1.0) < 0.5);
+    let radius = 0.5 * spacing * [1.0, 1.0 + 1e-12, 1.0 - 1e-9, 0.9][any(0.0, 4.0) as usize];
+    let mut color = |high: f64| match is_grey {
+        true => [any(0.0, high); 3].map(|channel| channel.to_string()).join(" "),
+        false => [(); 3].map(|()| any(0.0, high).to_string()).join(" "),
+    };
+    let mut text = format!("background {}\n", color(1.0));
+    let (light, ambient, diffuse, specular) = (color(1.0), color(0.2), color(0.8), color(0.5));
+    let [x, y, z] = [(); 3].map(|()| any(-3.0, 3.0) * spacing);
+    text += &format!("light {light} {x} {y} {z}\nlight {light} 0 {} 0\n", 5.0 * spacing);
+    text += &format!("surface {ambient} {diffuse} {specular} 20 {}\n", any(0.3, 1.0));
+    for place in 0..8 {
+        let [i, j, k] = [place & 1, place >> 1 & 1, place >> 2].map(|at| (f64::from(at) - 0.5) * spacing);
+        if any(0.0, 1.0) < 0.7 {
+            let (x, z) = (i * libm::cos(turn) - k * libm::sin(turn), i * libm::sin(turn) + k * libm::cos(turn));
+            text += &format!("sphere {x} {j} {} {radius}\n", z - 2.5 * spacing);
+        }
+    }
+    if any(0.0, 1.0) < 0.3 {
+        text += &format!("cylinder {} 0 {} {} {}\n", 2.0 * spacing, -2.5 * spacing, -2.0 * spacing, -spacing);
+    }
+    text + "write cluster.png\n"
+}
+
+#[test]
+fn packets_give_the_settled_pixels_of_clusters() {
+    let mut stream = Stream::new(41);
+    let mut failures = Vec::new();
+    for _ in 0..24 {
+        let text = cluster(&mut stream);
+        let program =
+            clisc::compile(&Source::from_bytes("scene.cli", text.clone().into_bytes()).expect("text")).program;
+        let program = ir::validate(program).expect("sound");
+        let mut registers = Registers::default();
+        program.commands.iter().for_each(|command| registers.step(command));
+        let found = differences("a cluster", SceneView::new(&program, registers), &sized(80, 60));
+        if !found.is_empty() {
+            failures.extend(found);
+            failures.push(text);
+        }
+    }
     assert_none(&failures);
 }
 

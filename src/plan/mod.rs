@@ -190,6 +190,7 @@ impl Plan<'_> {
     }
 
     /// Returns what a ray that is reflected by `mirror` can meet.
+    #[inline]
     #[must_use]
     pub fn mirrored_by(&self, mirror: Object) -> Candidates<'_> {
         match self.known.as_ref().and_then(|known| known.reflected.as_ref()) {
@@ -218,6 +219,7 @@ impl Plan<'_> {
     }
 
     /// Returns the place of an object among all, spheres first.
+    #[inline]
     fn place(&self, object: Object) -> usize {
         match object {
             Object::Sphere(i) => i as usize,

@@ -30,6 +30,7 @@
 use crate::ir::Surface;
 use crate::math::DoubleDouble;
 use crate::plan::{Light, Object, Part, Plan, Scene};
+use crate::trace::wide::cluster::Cluster;
 
 /// Half an ulp of 1: the relative error of one rounding is at most this.
 pub(super) const U: f64 = f64::EPSILON / 2.0;
@@ -78,6 +79,20 @@ pub(super) struct Face {
     pub eye_normal_error: f64,
     /// A: the error of such a point times the cosine between normal and ray.
     pub eye_error_at_right_angles: f64,
+}
+
+/// A sphere as reflected rays see it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct MirroredSphere {
+    pub center: [f64; 3],
+    pub radius_squared: f64,
+    /// g²r²: D of a sure hit is larger.
+    pub least: f64,
+    /// Whether the eye is inside.
+    pub is_shell: bool,
+    /// The numbers of its equation and of its face.
+    pub equation: f64,
+    pub face: u32,
 }
 
 /// What a face is.
@@ -219,6 +234,14 @@ pub(super) struct Terms {
     pub rounding: f64,
 }
 
+impl Terms {
+    /// Tells whether a hit's own colour is the same in all channels.
+    pub fn is_grey(&self) -> bool {
+        let is_grey = |[red, green, blue]: [f64; 3]| red == green && green == blue;
+        is_grey(self.ambient) && self.lights.iter().all(|light| is_grey(light.diffuse) && is_grey(light.specular))
+    }
+}
+
 /// What a surface makes of one light.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LightTerms {
@@ -239,6 +262,8 @@ pub(super) struct Bounds {
     /// All faces: those of spheres, then three for each cylinder, the wall, the lower and the upper cap.
     pub faces: Vec<Face>,
     pub spheres: Vec<EyeSphere>,
+    pub mirrored: Vec<MirroredSphere>,
+    pub cluster: Option<Cluster>,
     pub cylinders: Vec<EyeCylinder>,
     pub lights: Vec<WideLight>,
     pub terms: Vec<Terms>,
@@ -249,6 +274,8 @@ pub(super) struct Bounds {
     pub size: f64,
     pub wall_equations: Vec<u32>,
     pub sphere_equations: Vec<u32>,
+    /// For each equation the object that alone has it, as far as they are known.
+    owners: Vec<Option<Object>>,
 }
 
 impl Bounds {
@@ -268,8 +295,12 @@ impl Bounds {
         let cylinders =
             (0..n_cylinders).map(|i| eye_cylinder(scene, eye, i, &mut faces)).collect::<Option<Vec<_>>>()?;
         let groups = group_spheres(scene, &mut faces);
+        let mirrored: Vec<_> = faces[..n_spheres].iter().map(MirroredSphere::new).collect();
         Some(Self {
             groups,
+            owners: owners(&faces),
+            cluster: Cluster::new(plan, &mirrored),
+            mirrored,
             eye,
             eye_roundoff: eye.roundoff,
             faces,
@@ -281,6 +312,41 @@ impl Bounds {
             sphere_equations: scene.sphere_equations[..n_spheres].iter().map(|id| id.number()).collect(),
             wall_equations: scene.wall_equations[..n_cylinders].iter().map(|id| id.number()).collect(),
         })
+    }
+}
+
+/// More equations are not told apart by a table.
+const MAX_OWNERS: u32 = 1 << 16;
+
+/// Finds for each equation the object that alone has it.
+fn owners(faces: &[Face]) -> Vec<Option<Object>> {
+    let n_equations = faces.iter().map(|face| face.equation + 1).max().unwrap_or(0);
+    if n_equations > MAX_OWNERS {
+        return Vec::new();
+    }
+    let mut owners = vec![None; n_equations as usize];
+    let mut is_shared = vec![false; n_equations as usize];
+    for face in faces {
+        let i = face.equation as usize;
+        is_shared[i] |= owners[i].is_some();
+        owners[i] = if is_shared[i] { None } else { Some(face.object) };
+    }
+    owners
+}
+
+impl MirroredSphere {
+    /// Takes what there is to know from the face.
+    fn new(face: &Face) -> Self {
+        let Object::Sphere(i) = face.object else { unreachable!("a sphere's face") };
+        let radius_squared = face.radius * face.radius;
+        Self {
+            center: face.center,
+            radius_squared,
+            least: radius_squared * MIN_COSINE * MIN_COSINE,
+            is_shell: face.per_radius < 0.0,
+            equation: f64::from(face.equation),
+            face: i,
+        }
     }
 }
 
@@ -332,7 +398,14 @@ impl Bounds {
         let mut faces = Vec::with_capacity(spheres.len());
         let seen = spheres.iter().map(|&i| eye_sphere(&plan.scene, self.eye, i as usize, &mut faces));
         let spheres = seen.collect::<Option<Vec<_>>>()?;
-        Some(Self { eye: self.eye, faces, spheres, ..Self::of_nothing(self.eye_roundoff, self.size) })
+        let mirrored = faces.iter().map(MirroredSphere::new).collect();
+        Some(Self { eye: self.eye, faces, spheres, mirrored, ..Self::of_nothing(self.eye_roundoff, self.size) })
+    }
+
+    /// Returns the object that alone has an equation, if that is known.
+    #[inline(always)]
+    pub fn owner(&self, equation: f64) -> Option<Object> {
+        self.owners.get(equation as usize).copied().flatten()
     }
 
     fn of_nothing(eye_roundoff: f64, size: f64) -> Self {
@@ -342,12 +415,15 @@ impl Bounds {
             groups: Vec::new(),
             faces: Vec::new(),
             spheres: Vec::new(),
+            mirrored: Vec::new(),
+            cluster: None,
             cylinders: Vec::new(),
             lights: Vec::new(),
             terms: Vec::new(),
             size,
             wall_equations: Vec::new(),
             sphere_equations: Vec::new(),
+            owners: Vec::new(),
         }
     }
 }

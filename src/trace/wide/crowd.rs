@@ -11,7 +11,7 @@ use crate::trace::look_up;
 use crate::trace::reject::PlainRay;
 use crate::trace::wide::bounds::{Bounds, Face, U, WideLight, sphere_from};
 use crate::trace::wide::eye::MAX_LANES;
-use crate::trace::wide::mirror::Rays;
+use crate::trace::wide::queue::Rays;
 use crate::trace::wide::shade::Points;
 use crate::trace::wide::shadow::LightOccluders;
 

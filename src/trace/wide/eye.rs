@@ -9,6 +9,11 @@ use crate::trace::wide::bounds::{Bounds, EyeCap, EyeCylinder, EyeSphere, EyeWall
 /// The most lanes that a packet has.
 pub(super) const MAX_LANES: usize = 16;
 
+/// Room for one number a lane. A function that has some lays its registers down at whole cache lines too when it runs out of
+/// them; without, each would lie across two.
+#[repr(align(64))]
+pub(super) struct LaneArray(pub [f64; MAX_LANES]);
+
 /// The nearest hits so far.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Nearest<L: Lanes> {

@@ -4,7 +4,8 @@
 //! A ray is the line through o along the unit vector d; the exact ray starts within e of o and its direction is within ε of
 //! d. With m from o to a centre, b = m·d is off by e + |m|(ε + 8u), and D = b² − |m|² + r², or for a wall, where
 //! a = dx² + dz² stands before |m|² − r², by at most 8|m|²(ε + 8u) + 6|m|e + 16u·r². Of |m| only the square is at hand;
-//! for any length ℓ, |m| ≤ (|m|²/ℓ + ℓ)/2, and ℓ is a usual radius of the scene.
+//! for any length ℓ, |m| ≤ (|m|²/ℓ + ℓ)/2, and ℓ is a usual radius of the scene. In a cluster (see there) |m| has a bound
+//! beforehand.
 //!
 //! *How far off a hit is*, is measured, not predicted. Let P be the computed point, off the surface by ρ (for a sphere
 //! | |P − c| − r |, known from the length of the computed normal), and γ the cosine between normal and ray. The exact ray
@@ -17,147 +18,11 @@
 //! it by 2η, and one that is not of unit length by ζ stretches it by 4ζ.
 
 use crate::trace::kernels::{Lanes, Mask};
-use crate::trace::wide::bounds::{Bounds, Face, FaceKind, MIN_CAP_COSINE, MIN_COSINE, Terms, U};
-use crate::trace::wide::eye::{MAX_LANES, Nearest};
+use crate::trace::wide::bounds::{Bounds, Face, FaceKind, MIN_CAP_COSINE, MIN_COSINE, MirroredSphere, Terms, U};
+use crate::trace::wide::cluster::Cluster;
+use crate::trace::wide::eye::Nearest;
+use crate::trace::wide::queue::{Paths, Rays};
 use crate::trace::wide::shade::{Colors, Points, dot, splat_each};
-
-/// A packet of reflected rays, and what becomes of the colours they find.
-///
-/// The pixel's channel is min(A + B·x, H) for the colour x, within 0…1, of the ray, and off by `error` for an exact x.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Rays<L: Lanes> {
-    pub origin: [L; 3],
-    /// A unit vector.
-    pub dir: [L; 3],
-    pub origin_error: L,
-    pub dir_error: L,
-    /// The number of the equation that the ray leaves.
-    pub leaving: L,
-    /// A.
-    pub sum: [L; 3],
-    /// H.
-    pub ceiling: [L; 3],
-    /// B.
-    pub weight: L,
-    pub error: L,
-    /// The place in the tile.
-    pub pixel: L,
-    /// How many mirrors lie before it.
-    pub level: L,
-}
-
-/// How many numbers there are for each ray.
-const N_NUMBERS: usize = 19;
-
-/// For how many rays there is room. Rays are taken out as soon as they fill a packet, and a packet puts in no more than it
-/// took out; packets are written and read as a whole, whatever number of rays is in them.
-const CAPACITY: usize = 4 * MAX_LANES;
-
-/// Reflected rays that wait to be traced, number by number; the last to come is the first to go, so that they stay in the
-/// nearest cache.
-#[derive(Clone, Debug)]
-pub(super) struct Waiting {
-    len: usize,
-    numbers: [[f64; CAPACITY]; N_NUMBERS],
-}
-
-impl Waiting {
-    /// Makes room in which no ray waits.
-    pub fn new() -> Self {
-        Self { len: 0, numbers: [[0.0; CAPACITY]; N_NUMBERS] }
-    }
-
-    /// Returns how many rays there are.
-    pub fn len(&self) -> usize {
-        self.len
-    }
-
-    /// Adds the rays of the mask.
-    #[inline(always)]
-    pub fn push<L: Lanes>(&mut self, rays: &Rays<L>, mask: L::Mask) {
-        let ([ox, oy, oz], [dx, dy, dz]) = (rays.origin, rays.dir);
-        let ([ar, ag, ab], [hr, hg, hb]) = (rays.sum, rays.ceiling);
-        let numbers: [L; N_NUMBERS] = [
-            rays.level,
-            ox,
-            oy,
-            oz,
-            dx,
-            dy,
-            dz,
-            rays.origin_error,
-            rays.dir_error,
-            rays.leaving,
-            ar,
-            ag,
-            ab,
-            hr,
-            hg,
-            hb,
-            rays.weight,
-            rays.error,
-            rays.pixel,
-        ];
-        let n_rays = mask.bits().count_ones() as usize;
-        let end = self.len;
-        assert!(end + L::N <= CAPACITY);
-        for k in 0..N_NUMBERS {
-            if n_rays == L::N {
-                numbers[k].store(&mut self.numbers[k][end..]);
-            } else {
-                numbers[k].store_packed(mask, &mut self.numbers[k][end..]);
-            }
-        }
-        self.len += n_rays;
-    }
-
-    /// Takes out the last packet, and tells which of its lanes hold a ray.
-    #[inline(always)]
-    pub fn pop<L: Lanes>(&mut self) -> (Rays<L>, L::Mask) {
-        let n_rays = self.len.min(L::N);
-        self.len -= n_rays;
-        let first = self.len;
-        let mut numbers = [L::splat(0.0); N_NUMBERS];
-        for k in 0..N_NUMBERS {
-            numbers[k] = L::load(&self.numbers[k][first..]);
-        }
-        let [
-            level,
-            ox,
-            oy,
-            oz,
-            dx,
-            dy,
-            dz,
-            origin_error,
-            dir_error,
-            leaving,
-            ar,
-            ag,
-            ab,
-            hr,
-            hg,
-            hb,
-            weight,
-            error,
-            pixel,
-        ] = numbers;
-        let rays = Rays {
-            origin: [ox, oy, oz],
-            dir: [dx, dy, dz],
-            origin_error,
-            dir_error,
-            leaving,
-            sum: [ar, ag, ab],
-            ceiling: [hr, hg, hb],
-            weight,
-            error,
-            pixel,
-            level,
-        };
-        (rays, L::Mask::from_bits((1 << n_rays) - 1))
-    }
-}
 
 /// What the bounds of a packet of reflected rays have in common.
 #[derive(Clone, Copy, Debug)]
@@ -203,10 +68,18 @@ pub(super) fn nearest_hit<L: Lanes>(
     rays: &Rays<L>,
     active: L::Mask,
 ) -> Nearest<L> {
-    let reach = Reach::new(bounds, rays);
     let mut nearest = Nearest::nothing();
-    for &i in spheres {
-        meet_sphere(&mut nearest, bounds, i, rays, &reach, active);
+    if let Some(cluster) = &bounds.cluster {
+        meet_cluster(&mut nearest, cluster, &bounds.mirrored, spheres, rays, active, !cylinders.is_empty());
+        if cylinders.is_empty() {
+            return nearest;
+        }
+    }
+    let reach = Reach::new(bounds, rays);
+    if bounds.cluster.is_none() {
+        for &i in spheres {
+            meet_sphere(&mut nearest, bounds, &bounds.mirrored[i as usize], rays, &reach, active);
+        }
     }
     for &i in cylinders {
         let first = bounds.spheres.len() + 3 * i as usize;
@@ -215,30 +88,81 @@ pub(super) fn nearest_hit<L: Lanes>(
     nearest
 }
 
+/// Finds which of some spheres that are apart a packet meets first: that with the smallest b.
+///
+/// `compares`: whether t is still to be compared.
+#[inline(always)]
+fn meet_cluster<L: Lanes>(
+    nearest: &mut Nearest<L>,
+    cluster: &Cluster,
+    spheres: &[MirroredSphere],
+    among: &[u32],
+    rays: &Rays<L>,
+    active: L::Mask,
+    compares: bool,
+) {
+    let (turned, span) = (rays.dir_error + L::splat(8.0 * U), cluster.span);
+    let off = rays.origin_error * L::splat(1.01) + turned * L::splat(span);
+    let slack = rays.origin_error * L::splat(6.06 * span)
+        + (turned * L::splat(8.0 * span * span) + L::splat(cluster.radius_rounding));
+    let (minus_off, minus_slack, twice_slack) = (-off, -slack, slack + slack);
+    let mut b_first = L::splat(f64::INFINITY);
+    let mut discriminant_first = L::splat(1.0);
+    let mut doubt = active & !off.lt(L::splat(cluster.gap));
+    for &i in among {
+        let sphere = &spheres[i as usize];
+        let m: [L; 3] = [
+            L::splat(sphere.center[0]) - rays.origin[0],
+            L::splat(sphere.center[1]) - rays.origin[1],
+            L::splat(sphere.center[2]) - rays.origin[2],
+        ];
+        let b = dot(m, rays.dir);
+        let power = dot(m, m) - L::splat(sphere.radius_squared);
+        let discriminant = b * b - power;
+        let is_other = active & !rays.leaving.eq(L::splat(sphere.equation));
+        let maybe = is_other & discriminant.ge(minus_slack) & b.ge(minus_off);
+        if !maybe.any() {
+            continue;
+        }
+        let hit = maybe & discriminant.gt(slack + L::splat(sphere.least)) & b.gt(off) & power.gt(twice_slack);
+        doubt = doubt | (maybe & !hit);
+        let first = hit & b.lt(b_first);
+        b_first = L::select(first, b, b_first);
+        discriminant_first = L::select(first, discriminant, discriminant_first);
+        nearest.face = L::select(first, L::splat(f64::from(sphere.face)), nearest.face);
+    }
+    let root = discriminant_first.sqrt();
+    nearest.t = b_first - root;
+    nearest.doubt = doubt;
+    if compares {
+        let margin = off + slack / root;
+        nearest.margin = margin + margin;
+    }
+}
+
 #[inline(always)]
 fn meet_sphere<L: Lanes>(
     nearest: &mut Nearest<L>,
     bounds: &Bounds,
-    face_idx: u32,
+    sphere: &MirroredSphere,
     rays: &Rays<L>,
     reach: &Reach<L>,
     active: L::Mask,
 ) {
-    let face = &bounds.faces[face_idx as usize];
     let m: [L; 3] = [
-        L::splat(face.center[0]) - rays.origin[0],
-        L::splat(face.center[1]) - rays.origin[1],
-        L::splat(face.center[2]) - rays.origin[2],
+        L::splat(sphere.center[0]) - rays.origin[0],
+        L::splat(sphere.center[1]) - rays.origin[1],
+        L::splat(sphere.center[2]) - rays.origin[2],
     ];
-    let squared = face.radius * face.radius;
+    let (squared, face) = (sphere.radius_squared, sphere.face);
     let b = dot(m, rays.dir);
     let m_squared = dot(m, m);
     let power = m_squared - L::splat(squared);
     let discriminant = b * b - power;
-    let is_other = !rays.leaving.eq(L::splat(f64::from(face.equation)));
+    let is_other = !rays.leaving.eq(L::splat(sphere.equation));
     let slack = reach.square(m_squared, squared);
-    let least = slack + L::splat(squared * MIN_COSINE * MIN_COSINE);
-    if face.per_radius < 0.0 {
+    let least = slack + L::splat(sphere.least);
+    if sphere.is_shell {
         // A shell: where the ray leaves it the power is 0.
         let discriminant = L::select(is_other, discriminant, b * b);
         let off = reach.along(m_squared);
@@ -247,7 +171,7 @@ fn meet_sphere<L: Lanes>(
         nearest.doubt = nearest.doubt | (active & !hit);
         let root = discriminant.sqrt();
         let margin = off + slack / root;
-        nearest.consider(bounds, hit, b + root, margin + margin, face_idx);
+        nearest.consider(bounds, hit, b + root, margin + margin, face);
         return;
     }
     let line_meets = active & is_other & discriminant.ge(-slack);
@@ -265,7 +189,7 @@ fn meet_sphere<L: Lanes>(
         let root = discriminant.sqrt();
         // A root is off by at most the error of its square, divided by it.
         let margin = off + slack / root;
-        nearest.consider(bounds, hit, b - root, margin + margin, face_idx);
+        nearest.consider(bounds, hit, b - root, margin + margin, face);
     }
 }
 
@@ -407,8 +331,11 @@ pub(super) fn points<L: Lanes>(
         FaceKind::UpperCap => ([x, met.center[1], z], [zero, L::splat(1.0), zero]),
     };
     let cosine = -dot(normal, rays.dir);
-    let lengths = x.abs() + y.abs() + z.abs() + t;
-    let passes_within = rays.origin_error + t * rays.dir_error + lengths * L::splat(8.0 * U);
+    let rounding = match (&bounds.cluster, met.kind) {
+        (Some(cluster), FaceKind::Sphere) => L::splat(cluster.hit_rounding),
+        _ => (x.abs() + y.abs() + z.abs() + t) * L::splat(8.0 * U),
+    };
+    let passes_within = rays.origin_error + t * rays.dir_error + rounding;
     let is_curved = matches!(met.kind, FaceKind::Sphere | FaceKind::Wall);
     let (point_error, normal_error, length_error, vague) = if is_curved {
         // | |n|² − 1 | / 2, with what the normal's own roundings hide.
@@ -428,41 +355,45 @@ pub(super) fn points<L: Lanes>(
     let vague = vague | (lanes & !is_small);
     let active = lanes & !vague;
     let (dir_error, equation) = (rays.dir_error, met.equation);
-    (Points { point, normal, view, point_error, normal_error, length_error, dir_error, equation, active }, vague)
+    (
+        Points { point, normal, view, cosine, point_error, normal_error, length_error, dir_error, equation, active },
+        vague,
+    )
 }
 
-/// Returns the rays that leave a packet of hits on a mirror, given the rays that met it.
+/// Returns the rays that leave a packet of hits on a mirror.
 #[inline(always)]
-pub(super) fn reflect<L: Lanes>(terms: &Terms, at: &Points<L>, local: &Colors<L>, rays: &Rays<L>) -> Rays<L> {
-    let twice = dot(at.normal, at.view) * L::splat(2.0);
+pub(super) fn reflect<L: Lanes>(at: &Points<L>) -> Rays<L> {
+    let twice = at.cosine + at.cosine;
     let dir = [at.normal[0] * twice - at.view[0], at.normal[1] * twice - at.view[1], at.normal[2] * twice - at.view[2]];
     let dir_error = at.dir_error * L::splat(1.001)
         + at.normal_error * L::splat(2.05)
         + at.length_error * L::splat(4.0)
         + L::splat(16.0 * U);
-    let weight = rays.weight;
+    Rays { origin: at.point, dir, origin_error: at.point_error, dir_error, leaving: at.equation }
+}
+
+/// Returns what becomes of the colours behind a packet of hits on a mirror, given what becomes of their own.
+#[inline(always)]
+pub(super) fn go_on<L: Lanes>(terms: &Terms, local: &Colors<L>, paths: &Paths<L>) -> Paths<L> {
+    let weight = paths.weight;
     let sum = [
-        rays.sum[0] + weight * local.color[0],
-        rays.sum[1] + weight * local.color[1],
-        rays.sum[2] + weight * local.color[2],
+        paths.sum[0] + weight * local.color[0],
+        paths.sum[1] + weight * local.color[1],
+        paths.sum[2] + weight * local.color[2],
     ];
     let ceiling = [
-        rays.ceiling[0].min(rays.sum[0] + weight),
-        rays.ceiling[1].min(rays.sum[1] + weight),
-        rays.ceiling[2].min(rays.sum[2] + weight),
+        paths.ceiling[0].min(paths.sum[0] + weight),
+        paths.ceiling[1].min(paths.sum[1] + weight),
+        paths.ceiling[2].min(paths.sum[2] + weight),
     ];
-    Rays {
-        origin: at.point,
-        dir,
-        origin_error: at.point_error,
-        dir_error,
-        leaving: at.equation,
+    Paths {
         sum,
         ceiling,
         weight: weight * L::splat(terms.reflectance),
-        error: rays.error + weight * local.error,
-        pixel: rays.pixel,
-        level: rays.level + L::splat(1.0),
+        error: paths.error + weight * local.error,
+        pixel: paths.pixel,
+        level: paths.level + L::splat(1.0),
     }
 }
 
@@ -470,14 +401,14 @@ pub(super) fn reflect<L: Lanes>(terms: &Terms, at: &Points<L>, local: &Colors<L>
 ///
 /// Each level has lost at most eight roundings of the sum.
 #[inline(always)]
-pub(super) fn compose<L: Lanes>(rays: &Rays<L>, color: [L; 3], error: L) -> ([L; 3], L) {
+pub(super) fn compose<L: Lanes>(paths: &Paths<L>, color: [L; 3], error: L) -> ([L; 3], L) {
     let (zero, one) = (L::splat(0.0), L::splat(1.0));
     let mut channels = color;
     let mut largest = one;
     for k in 0..3 {
-        channels[k] = (rays.sum[k] + rays.weight * color[k].min(one).max(zero)).min(rays.ceiling[k]);
-        largest = largest.max(rays.sum[k] + rays.weight);
+        channels[k] = (paths.sum[k] + paths.weight * color[k].min(one).max(zero)).min(paths.ceiling[k]);
+        largest = largest.max(paths.sum[k] + paths.weight);
     }
-    let rounding = largest * (rays.level + L::splat(2.0)) * L::splat(8.0 * U);
-    (channels, rays.error + rays.weight * error + rounding)
+    let rounding = largest * (paths.level + L::splat(2.0)) * L::splat(8.0 * U);
+    (channels, paths.error + paths.weight * error + rounding)
 }

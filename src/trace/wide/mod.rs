@@ -1,7 +1,7 @@
 //! The wide tracer: packets of pixels in plain binary64, with bounds that are known beforehand.
 //!
 //! A tile goes through three stages. Its eye rays find what they meet first ([`eye`]); the hits are shaded, face by face
-//! ([`shade`], [`shadow`]); mirrors send rays on, which wait until they fill a packet ([`mirror`]). The
+//! ([`shade`], [`shadow`]); mirrors send rays on ([`mirror`]), which wait until a batch of them is followed ([`queue`]). The
 //! bounds on all errors are worked out once for an image ([`bounds`]), where they can be, and carried with the rays where
 //! not. A pixel of which every comparison and the rounding of every channel is decided beyond them is the pixel that
 //! exact arithmetic gives. Every other pixel is left to `pixel::settle`: silhouettes, edges of shadows, colours at a step,
@@ -17,9 +17,11 @@
 )]
 
 mod bounds;
+mod cluster;
 mod crowd;
 mod eye;
 mod mirror;
+mod queue;
 mod shade;
 mod shadow;
 
@@ -37,7 +39,8 @@ use crate::trace::pixel::Sampling;
 use self::bounds::{Bounds, Face, FaceKind};
 use self::crowd::{Around, Few};
 use self::eye::{EyeRays, Nearest, RowSphere};
-use self::mirror::{Met, Rays, Waiting};
+use self::mirror::Met;
+use self::queue::{Channels, Number, Packet, Paths, Waiting};
 use self::shade::{Colors, Points};
 use self::shadow::LightOccluders;
 
@@ -67,6 +70,8 @@ pub(super) struct Wide {
     background: u32,
     /// Along a side of a pixel.
     samples: u32,
+    /// Which channels the paths of mirrored colours have.
+    channels: Channels,
 }
 
 /// A rectangle of pixels inside of one tile of the plan.
@@ -92,6 +97,8 @@ pub(super) struct Scratch {
     /// For each face, and then for each group, what can hide the lights from it, once it is met.
     occluders: Vec<Option<LightOccluders>>,
     waiting: Waiting,
+    /// The rays that are followed.
+    followed: Vec<Packet>,
     /// What is looked up in a crowd: for a packet of hits, and for one of reflected rays.
     around: Around,
     found: Vec<u32>,
@@ -121,13 +128,16 @@ impl Wide {
         let max_side = step.value() * samples * f64::from(settings.size.width() + 2);
         let is_moderate = step.value() > 1e-9 && max_slope < 1e6 && max_side < 1e6 && dir_error < 1e-12;
         let background = crate::trace::pixel::bytes_of(plan.scene.background)?;
+        let bounds = match (is_moderate, is_crowd) {
+            (false, _) => return None,
+            (true, false) => Bounds::new(plan, dir_error, max_slope)?,
+            (true, true) => Bounds::of_crowd(plan, dir_error, max_slope)?,
+        };
+        let are_equal = bounds.terms.iter().all(|terms| terms.reflectance == 0.0 || terms.is_grey());
         Some(Self {
             backend,
-            bounds: match (is_moderate, is_crowd) {
-                (false, _) => return None,
-                (true, false) => Bounds::new(plan, dir_error, max_slope)?,
-                (true, true) => Bounds::of_crowd(plan, dir_error, max_slope)?,
-            },
+            bounds,
+            channels: if are_equal { Channels::Equal } else { Channels::Three },
             is_crowd,
             step: step.value(),
             background: u32::from_le_bytes([background[0], background[1], background[2], 0]),
@@ -145,7 +155,8 @@ impl Wide {
             hits: Vec::new(),
             rows: Vec::new(),
             occluders: vec![None; self.bounds.faces.len() + self.bounds.groups.len()],
-            waiting: Waiting::new(),
+            waiting: Waiting::new(self.channels),
+            followed: Vec::new(),
             around: Around::default(),
             found: Vec::new(),
             counts: Counts::default(),
@@ -178,17 +189,10 @@ impl Wide {
     pub fn trace(&self, plan: &Plan<'_>, sampling: &Sampling, rect: &Rect, scratch: &mut Scratch) {
         let among = plan.tiles.candidates(rect.columns.start, rect.rows.start);
         if !self.is_crowd {
-            self.backend.run(TileJob {
-                wide: self,
-                bounds: &self.bounds,
-                among,
-                plan,
-                sampling,
-                rect,
-                scratch,
-                sample: [0; 2],
-            });
-            return;
+            let bounds = &self.bounds;
+            let job = TileJob { wide: self, bounds, among, plan, sampling, rect, scratch, sample: [0; 2] };
+            // Packets of sixteen would reach beyond narrower tiles.
+            return if plan.tiles.width() >= 16 { self.backend.run_twofold(job) } else { self.backend.run(job) };
         }
         let Some(few) = Few::new(&self.bounds, plan, among.spheres) else {
             scratch.slow.fill(u32::MAX);
@@ -351,15 +355,30 @@ impl TileJob<'_> {
     fn shade<L: Lanes>(&mut self) {
         let n_hits = self.scratch.hits.len();
         let mut hit_idx = 0;
-        while hit_idx < n_hits || self.scratch.waiting.len() > 0 {
-            // Mirrors' rays go first, as soon as there is a packet of them, or nothing else.
-            if self.scratch.waiting.len() >= if hit_idx < n_hits { L::N } else { 1 } {
-                self.follow_packet::<L>();
-            } else {
+        loop {
+            while hit_idx < n_hits && !self.scratch.waiting.is_full::<L>() {
                 self.shade_packet::<L>(self.scratch.hits[hit_idx]);
                 hit_idx += 1;
             }
+            let is_last = hit_idx == n_hits;
+            while self.follow::<L>(is_last) {}
+            if is_last {
+                return;
+            }
         }
+    }
+
+    /// Follows all rays that wait by one level; `false` when there are none, or only fewer than fill a packet, which stay
+    /// unless they are the last.
+    #[inline(always)]
+    fn follow<L: Lanes>(&mut self, is_last: bool) -> bool {
+        let mut followed = std::mem::take(&mut self.scratch.followed);
+        let n_packets = self.scratch.waiting.take::<L>(&mut followed, is_last);
+        for packet in &followed[..n_packets] {
+            self.follow_packet::<L>(packet);
+        }
+        self.scratch.followed = followed;
+        n_packets > 0
     }
 
     /// Shades a packet of hits of eye rays.
@@ -373,7 +392,7 @@ impl TileJob<'_> {
         self.mark_slow::<L>(packet, lanes & colors.doubt);
         let sure = lanes & !colors.doubt;
         if terms.reflectance > 0.0 {
-            self.send_on(face, &at, &colors, &eye_rays(packet), sure);
+            self.send_on(face, &at, &colors, &eye_paths(packet), sure);
         } else if self.wide.samples > 1 {
             self.add_up(packet, colors.color, colors.error, sure);
         } else {
@@ -441,17 +460,18 @@ impl TileJob<'_> {
             FaceKind::LowerCap => ([x, L::splat(cy), z], [zero, L::splat(-1.0), zero]),
             FaceKind::UpperCap => ([x, L::splat(cy), z], [zero, one, zero]),
         };
+        let cosine = shade::dot(normal, view);
         let mut point_error = L::splat(face.eye_point_error);
         let mut normal_error = L::splat(face.eye_normal_error);
         if face.is_vague || (is_mirror && matches!(face.kind, FaceKind::Sphere | FaceKind::Wall)) {
             // Reflections multiply the error, so it is taken as it is here, not as it may be at the silhouette.
-            point_error = L::splat(1.1 * face.eye_error_at_right_angles) / shade::dot(normal, view);
+            point_error = L::splat(1.1 * face.eye_error_at_right_angles) / cosine;
             normal_error = point_error * per_radius.abs() + L::splat(4.0 * bounds::U);
         }
         let dir_error = L::splat(2.0 * self.wide.bounds.eye_roundoff);
         let length_error = normal_error * L::splat(0.5);
         let equation = L::splat(f64::from(face.equation));
-        Points { point, normal, view, point_error, normal_error, length_error, dir_error, equation, active }
+        Points { point, normal, view, cosine, point_error, normal_error, length_error, dir_error, equation, active }
     }
 
     /// Shades a packet of hits without their reflections, on one face or, if it is shared, on those of its group.
@@ -463,10 +483,10 @@ impl TileJob<'_> {
         let bounds = &self.wide.bounds;
         let shared = face.group.filter(|_| is_shared).map(|group| group as usize);
         let slot = shared.map_or_else(|| face_index(bounds, face), |group| bounds.faces.len() + group);
-        let occluders = self.scratch.occluders[slot].get_or_insert_with(|| match shared {
-            Some(group) => LightOccluders::of_group(bounds, self.plan, &bounds.groups[group]),
-            None => LightOccluders::new(bounds, self.plan, face),
-        });
+        if self.scratch.occluders[slot].is_none() {
+            self.scratch.occluders[slot] = Some(collect_occluders(bounds, self.plan, face, shared));
+        }
+        let Some(occluders) = &self.scratch.occluders[slot] else { unreachable!("it was just collected") };
         let colors = shade::shade(&bounds.lights, &bounds.terms[face.surface], occluders, at);
         self.scratch.counts.shadow_rays += u64::from(colors.shadow_rays);
         colors
@@ -489,58 +509,58 @@ impl TileJob<'_> {
 
     /// Puts the reflections of a packet of hits into the queue.
     #[inline(always)]
-    fn send_on<L: Lanes>(&mut self, face: &Face, at: &Points<L>, colors: &Colors<L>, rays: &Rays<L>, lanes: L::Mask) {
+    fn send_on<L: Lanes>(&mut self, face: &Face, at: &Points<L>, colors: &Colors<L>, paths: &Paths<L>, lanes: L::Mask) {
         let terms = &self.wide.bounds.terms[face.surface];
         if !terms.is_nonnegative {
-            self.mark_places(rays.pixel, lanes);
+            self.mark_places(paths.pixel, lanes);
             return;
         }
-        let reflected = mirror::reflect(terms, at, colors, rays);
         self.scratch.counts.reflected_rays += u64::from(lanes.bits().count_ones());
-        self.scratch.waiting.push(&reflected, lanes);
+        self.scratch.waiting.push(&mirror::reflect(at), &mirror::go_on(terms, colors, paths), lanes);
     }
 
-    /// Follows the last packet of the rays that wait.
+    /// Follows a packet of rays.
     #[inline(always)]
-    fn follow_packet<L: Lanes>(&mut self) {
-        let (rays, active) = self.scratch.waiting.pop::<L>();
-        let rays = &rays;
+    fn follow_packet<L: Lanes>(&mut self, packet: &Packet) {
         if !self.wide.is_crowd {
-            self.follow_among(self.plan.mirrored(), rays, active);
+            let leaving = packet.common::<L>(Number::Leaving).and_then(|equation| self.bounds.owner(equation));
+            let among = leaving.map_or_else(|| self.plan.mirrored(), |object| self.plan.mirrored_by(object));
+            self.follow_among::<L>(among, packet);
             return;
         }
         let mut found = std::mem::take(&mut self.scratch.found);
-        let few = crowd::find_along(self.plan, rays, active, &mut found)
+        let few = crowd::find_along::<L>(self.plan, &packet.rays(), packet.lanes::<L>(), &mut found)
             .then(|| Few::new(&self.wide.bounds, self.plan, &found))
             .flatten();
         self.scratch.found = found;
         match few {
-            None => self.mark_places(rays.pixel, active),
+            None => self.mark_places::<L>(packet.get(Number::Pixel), packet.lanes::<L>()),
             Some(few) => {
                 let TileJob { wide, plan, sampling, rect, sample, .. } = *self;
                 let (bounds, among, scratch) = (&few.bounds, few.candidates(), &mut *self.scratch);
                 let mut job = TileJob { wide, bounds, among, plan, sampling, rect, scratch, sample };
-                job.follow_among(among, rays, active);
+                job.follow_among::<L>(among, packet);
             }
         }
     }
 
     /// Follows a packet of rays to what it meets of the candidates.
     #[inline(always)]
-    fn follow_among<L: Lanes>(&mut self, among: Candidates<'_>, rays: &Rays<L>, active: L::Mask) {
-        let bounds = self.bounds;
+    fn follow_among<L: Lanes>(&mut self, among: Candidates<'_>, packet: &Packet) {
+        let (bounds, active) = (self.bounds, packet.lanes::<L>());
         self.scratch.counts.tests += among.len() as u64 * u64::from(active.bits().count_ones());
-        let nearest = mirror::nearest_hit(bounds, among.spheres, among.cylinders, rays, active);
-        self.mark_places(rays.pixel, active & nearest.doubt);
+        let nearest = mirror::nearest_hit::<L>(bounds, among.spheres, among.cylinders, &packet.rays(), active);
+        self.mark_places::<L>(packet.get(Number::Pixel), active & nearest.doubt);
         let sure = active & !nearest.doubt;
         let met = sure & nearest.met();
         let zero = L::splat(0.0);
-        self.finish(rays, shade::splat_each(self.plan.scene.background.to_array()), zero, sure & !met);
-        let beyond = met & rays.level.gt(L::splat(f64::from(self.plan.settings.max_level)));
-        self.finish(rays, [zero; 3], zero, beyond);
+        self.finish::<L>(packet, shade::splat_each(self.plan.scene.background.to_array()), zero, sure & !met);
+        let beyond = met & packet.get::<L>(Number::Level).gt(L::splat(f64::from(self.plan.settings.max_level)));
+        self.finish::<L>(packet, [zero; 3], zero, beyond);
         let met = met & !beyond;
-        let mut faces = [0.0; eye::MAX_LANES];
-        nearest.face.store(&mut faces);
+        let mut faces = eye::LaneArray([0.0; eye::MAX_LANES]);
+        nearest.face.store(&mut faces.0);
+        let faces = &faces.0;
         let mut rest = met.bits();
         while rest != 0 {
             let number = faces[rest.trailing_zeros() as usize];
@@ -561,40 +581,41 @@ impl TileJob<'_> {
                     is_shared = true;
                 }
             }
-            let (at, vague) = mirror::points(bounds, &hit, rays, nearest.t, L::Mask::from_bits(lanes));
-            self.mark_places(rays.pixel, vague);
-            self.shade_reflected(face, is_shared, rays, &at);
+            let (at, vague) = mirror::points::<L>(bounds, &hit, &packet.rays(), nearest.t, L::Mask::from_bits(lanes));
+            self.mark_places::<L>(packet.get(Number::Pixel), vague);
+            self.shade_reflected::<L>(face, is_shared, packet, &at);
         }
     }
 
     /// Shades the hits of reflected rays, and sends them on from mirrors.
     #[inline(always)]
-    fn shade_reflected<L: Lanes>(&mut self, face: &Face, is_shared: bool, rays: &Rays<L>, at: &Points<L>) {
+    fn shade_reflected<L: Lanes>(&mut self, face: &Face, is_shared: bool, packet: &Packet, at: &Points<L>) {
         let colors = self.local(face, is_shared, at);
-        self.mark_places(rays.pixel, at.active & colors.doubt);
+        self.mark_places::<L>(packet.get(Number::Pixel), at.active & colors.doubt);
         let sure = at.active & !colors.doubt;
         if self.wide.bounds.terms[face.surface].reflectance > 0.0 {
-            self.send_on(face, at, &colors, rays, sure);
+            self.send_on(face, at, &colors, &packet.paths(self.wide.channels), sure);
         } else {
-            self.finish(rays, colors.color, colors.error, sure);
+            self.finish::<L>(packet, colors.color, colors.error, sure);
         }
     }
 
     /// Settles the pixels of rays that have found their colour.
     #[inline(always)]
-    fn finish<L: Lanes>(&mut self, rays: &Rays<L>, color: [L; 3], error: L, lanes: L::Mask) {
+    fn finish<L: Lanes>(&mut self, packet: &Packet, color: [L; 3], error: L, lanes: L::Mask) {
         if !lanes.any() {
             return;
         }
-        let (color, error) = mirror::compose(rays, color, error);
+        let paths = packet.paths::<L>(self.wide.channels);
+        let (color, error) = mirror::compose(&paths, color, error);
         if self.wide.samples > 1 {
-            self.add_up_each(rays.pixel, [color[0], color[1], color[2], error], lanes);
+            self.add_up_each(paths.pixel, [color[0], color[1], color[2], error], lanes);
             return;
         }
         let (bytes, proved) = shade::quantise(color, error);
-        self.mark_places(rays.pixel, lanes & !proved);
+        self.mark_places(paths.pixel, lanes & !proved);
         let (mut places, mut found) = ([0.0; eye::MAX_LANES], [0; eye::MAX_LANES]);
-        rays.pixel.store(&mut places);
+        paths.pixel.store(&mut places);
         let lanes = lanes & proved;
         bytes.store_whole(lanes, &mut found);
         let mut rest = lanes.bits();
@@ -648,6 +669,17 @@ fn mark(slow: &mut [u32], first: usize, bits: u32) {
     }
 }
 
+/// Collects what can hide the lights from a face, or from all of a group. It is called once for each: what calls it keeps its
+/// registers otherwise.
+#[cold]
+#[inline(never)]
+fn collect_occluders(bounds: &Bounds, plan: &Plan<'_>, face: &Face, group: Option<usize>) -> LightOccluders {
+    match group {
+        Some(group) => LightOccluders::of_group(bounds, plan, &bounds.groups[group]),
+        None => LightOccluders::new(bounds, plan, face),
+    }
+}
+
 /// A face's number: faces lie side by side.
 fn face_index(bounds: &Bounds, face: &Face) -> usize {
     let n_spheres = bounds.spheres.len();
@@ -665,22 +697,10 @@ fn numbers<L: Lanes>() -> L {
     L::load(&[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.0, 12.0, 13.0, 14.0, 15.0])
 }
 
-/// Eye rays as they are before they meet anything: the pixel is the colour they find.
+/// Returns what becomes of the colours that eye rays find: they are those of the pixels.
 #[inline(always)]
-fn eye_rays<L: Lanes>(packet: usize) -> Rays<L> {
+fn eye_paths<L: Lanes>(packet: usize) -> Paths<L> {
     let (zero, one) = (L::splat(0.0), L::splat(1.0));
-    let lanes = numbers::<L>();
-    Rays {
-        origin: [zero; 3],
-        dir: [zero; 3],
-        origin_error: zero,
-        dir_error: zero,
-        leaving: zero,
-        sum: [zero; 3],
-        ceiling: [one; 3],
-        weight: one,
-        error: zero,
-        pixel: lanes + L::splat((packet * L::N) as f64),
-        level: zero,
-    }
+    let pixel = numbers::<L>() + L::splat((packet * L::N) as f64);
+    Paths { sum: [zero; 3], ceiling: [one; 3], weight: one, error: zero, pixel, level: zero }
 }

@@ -35,6 +35,8 @@ pub(super) struct Points<L: Lanes> {
     pub normal: [L; 3],
     /// The unit vector to where the ray comes from; used for specular light alone.
     pub view: [L; 3],
+    /// Normal times view; used for specular light and mirrors alone.
+    pub cosine: L,
     pub point_error: L,
     pub normal_error: L,
     /// How far the computed normal is from unit length.
@@ -126,10 +128,9 @@ pub(super) fn shade<L: Lanes>(
             n_dot_l * L::splat(light_terms.diffuse[2]),
         ];
         if terms.has_specular {
-            let n_dot_v = dot(at.normal, at.view);
             let l_dot_v = -(dot(w, at.view) * per_distance);
             let s = one + l_dot_v;
-            let doubled = n_dot_l + n_dot_v;
+            let doubled = n_dot_l + at.cosine;
             let per_s = one / s;
             let squared = (doubled * doubled * half * per_s).min(one);
             let mut vague = lit & !s.gt(L::splat(MIN_HALF));
