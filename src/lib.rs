@@ -53,6 +53,8 @@ pub mod exec;
 
 pub mod format;
 
+pub mod lint;
+
 pub mod ide;
 
 #[cfg(feature = "testing")]

@@ -209,7 +209,7 @@ fn codes_are_explained() {
     let list = folder.clisc(&["explain"]);
     assert_eq!(list.code, Some(0));
     assert!(list.stdout.lines().any(|line| line == "E0203  error    missing argument"), "{}", list.stdout);
-    assert!(list.stdout.lines().any(|line| line == "W0301  warning  no `write`"), "{}", list.stdout);
+    assert!(list.stdout.lines().any(|line| line == "W0301  warning  no `write` (no-write)"), "{}", list.stdout);
     let page = folder.clisc(&["explain", "e0203"]);
     assert!(page.stdout.starts_with("# E0203: missing argument\n"), "{}", page.stdout);
     let unknown = folder.clisc(&["explain", "E0215"]);

@@ -21,6 +21,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("trace", &["ir", "plan", "math", "image"]),
     ("exec", &["ir", "plan", "trace", "image", "diag"]),
     ("format", &["source", "diag", "syntax", "lower", "exec"]),
+    ("lint", &["source", "diag", "syntax", "compile", "ir", "plan", "trace", "exec"]),
     ("ide", &["source", "diag", "syntax", "compile", "exec"]),
     (
         "testing",
@@ -126,6 +127,7 @@ fn each_foreign_tool_has_one_room() {
         ("logos::", "src/syntax"),
         ("chumsky::", "src/syntax/parser"),
         ("png::", "src/image"),
+        ("toml::", "src/lint"),
         ("crc32fast::", "src/image"),
         ("image::ImageFormat", "src/image"),
         ("image::ImageReader", "src/image"),

@@ -17,7 +17,8 @@ fn scenes() -> Vec<PathBuf> {
         fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path()).collect()
     };
     let folders = entries(&root).into_iter().filter(|path| path.is_dir() && !path.ends_with("invalid"));
-    let mut scenes: Vec<_> = folders.flat_map(|folder| entries(&folder)).collect();
+    let is_config = |path: &PathBuf| path.ends_with("clisc.toml");
+    let mut scenes: Vec<_> = folders.flat_map(|folder| entries(&folder)).filter(|path| !is_config(path)).collect();
     scenes.sort();
     assert!(scenes.len() > 25 && scenes.iter().all(|path| path.extension().is_some_and(|ending| ending == "cli")));
     scenes

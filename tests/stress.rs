@@ -65,6 +65,7 @@ fn case(name: &str) -> Case {
 fn cases() -> Vec<Case> {
     let entries = fs::read_dir(root().join("scenes/stress")).expect("a folder");
     let mut paths: Vec<_> = entries.map(|entry| entry.expect("an entry").path()).collect();
+    paths.retain(|path| path.extension().is_some_and(|ending| ending == "cli"));
     paths.sort();
     paths.iter().map(|path| case(&format!("stress/{}", path.file_stem().expect("a name").display()))).collect()
 }

@@ -124,6 +124,7 @@ codes! {
     MANY_LIGHTS = Warning "W0304" "many-lights": "more than ten lights";
     BEHIND_LAST_WRITE = Warning "W0305" "behind-last-write": "commands behind the last `write`";
     WRITTEN_TWICE = Warning "W0306" "written-twice": "two `write`s of one name";
+    ARGUMENT_ORDER = Warning "W0307" "argument-order": "a light's place before its colour";
 }
 
 /// Returns the code with this id, upper or lower case.

@@ -98,8 +98,19 @@ impl Values<'_> {
             let help = "write a radius above 0, or remove the object";
             (format!("the radius of a `{name}` is 0"), help.to_owned())
         };
-        let fix = (self.numbers[index] < 0.0).then(|| self.without_sign(index));
-        self.at(&codes::RADIUS_NOT_POSITIVE, index, message).label("must be above 0").help(help).fix(fix)
+        let unsigned = (self.numbers[index] < 0.0).then(|| self.without_sign(index));
+        let diagnostic = self.at(&codes::RADIUS_NOT_POSITIVE, index, message).label("must be above 0");
+        // Other programs had the radius first, and the place behind it mostly has the lowest number last.
+        let in_order = [1, 2, 3, 0];
+        let has_radius_first = match (self.spec.kind, self.numbers) {
+            (CommandKind::Sphere, &[x, _, z, radius]) => x > 0.0 && radius < 0.0 && (z >= 0.0 || radius < z),
+            _ => false,
+        };
+        if has_radius_first {
+            let help = format!("if the radius came first, {}", proposed(&self.reordered(&in_order)));
+            return diagnostic.help(help).fix(self.in_order(&in_order)).fix(unsigned);
+        }
+        diagnostic.help(help).fix(unsigned)
     }
 
     fn check_order(&self, acc: &mut Vec<Diagnostic>) {
@@ -135,6 +146,41 @@ impl Values<'_> {
         format!("{} {}", self.spec.name, texts.join(" "))
     }
 
+    /// Tells whether the numbers of a light look like its place and then its colour: those in the place of a colour make
+    /// none, and those in the place of its place would. A light brighter than 1 is none, unless all else says so.
+    fn has_place_before_color(&self, outside: &[usize]) -> bool {
+        let (CommandKind::Light, &[r, g, b, x, y, z]) = (self.spec.kind, self.numbers) else { return false };
+        let is_color = [x, y, z].iter().all(|channel| (0.0..=1.0).contains(channel));
+        let n_lit = [x, y, z].iter().filter(|channel| **channel > 0.0).count();
+        let has_negative = [r, g, b].iter().any(|channel| *channel < 0.0);
+        is_color && ((has_negative && n_lit > 0) || (n_lit >= 2 && !self.is_in_bytes(outside)))
+    }
+
+    fn place_before_color(&self) -> Diagnostic {
+        let in_order = [3, 4, 5, 0, 1, 2];
+        Diagnostic::new(
+            &codes::ARGUMENT_ORDER,
+            self.spans[0].to(self.spans[2]),
+            "the colour of this `light` looks like a place, and its place like a colour",
+        )
+        .label("a colour comes first")
+        .help(proposed(&self.reordered(&in_order)))
+        .note("other programs had the place first")
+        .fix(self.in_order(&in_order))
+    }
+
+    /// Returns the command with its arguments in another order.
+    fn reordered(&self, order: &[usize]) -> String {
+        let texts: Vec<_> = order.iter().map(|&index| self.text(index)).collect();
+        format!("{} {}", self.spec.name, texts.join(" "))
+    }
+
+    /// Returns the fix that puts the arguments in another order.
+    fn in_order(&self, order: &[usize]) -> Fix {
+        let edits = order.iter().zip(&self.spans).map(|(&index, span)| Edit::replace(*span, self.text(index)));
+        Fix::guess(proposed(&self.reordered(order)), edits.collect())
+    }
+
     /// Tells whether the numbers look like channels from 0 to 255.
     fn is_in_bytes(&self, outside: &[usize]) -> bool {
         // A light of 2 or 10 is meant as one; above this a scale to 255 is likelier.
@@ -167,6 +213,9 @@ impl Values<'_> {
         };
         let outside: Vec<_> = (0..args.len()).filter(is_outside).collect();
         let Some((&first, others)) = outside.split_first() else { return };
+        if self.has_place_before_color(&outside) {
+            return acc.push(self.place_before_color());
+        }
         let names = named(outside.iter().map(|&index| args[index].name));
         let message = match others {
             [] => format!("{names} of `{}` is {}, outside 0 to 1", self.spec.name, self.shown(first)),

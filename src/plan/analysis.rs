@@ -41,12 +41,23 @@ pub(super) fn analyse(
     settings: &Settings,
     report: &mut Report,
 ) -> Option<Analysis> {
+    analyse_pairs(scene, fov_deg, settings, report, max_pairs(settings))
+}
+
+/// Does the work of [`analyse`] if there are at most so many pairs.
+pub(super) fn analyse_pairs(
+    scene: &mut Scene<'_>,
+    fov_deg: f64,
+    settings: &Settings,
+    report: &mut Report,
+    max_pairs: u64,
+) -> Option<Analysis> {
     let finds_objects = settings.passes.contains(Pass::Objects);
     let copies = if finds_objects { find_copies(scene) } else { vec![false; scene.n_objects()] };
     let has_copies = copies.contains(&true);
     let n_left = copies.iter().filter(|is_copy| !**is_copy).count() as u64;
     let n_pairs = n_left.pow(2).saturating_mul(1 + scene.lights.len() as u64);
-    let is_small = n_pairs <= max_pairs(settings);
+    let is_small = n_pairs <= max_pairs;
     if !is_small && !has_copies {
         return None;
     }

@@ -10,7 +10,7 @@ mod parser;
 pub mod spec;
 mod token;
 
-pub use directive::directive;
+pub use directive::{Directive, directive, directives};
 pub use dump::{dump_ast, dump_ast_json, dump_tokens, dump_tokens_json};
 pub use lexer::{lex, lex_one};
 pub use parser::{Parse, Runs, argument_spans, file_name, parse, parse_in_chunks};

@@ -19,7 +19,10 @@ impl Validator<'_> {
     fn check(&mut self, schema: &Value, value: &Value, at: &str) {
         let Some(keywords) = schema.as_object() else {
             let is_allowed = schema.as_bool().expect("a schema is an object or a boolean");
-            return if is_allowed { () } else { self.found.push(format!("{at} may not be there")) };
+            if !is_allowed {
+                self.found.push(format!("{at} may not be there"));
+            }
+            return;
         };
         for (keyword, rule) in keywords {
             if !self.holds(schema, keyword, rule, value, at) {
@@ -96,8 +99,10 @@ fn is_of(name: &Value, value: &Value) -> bool {
 /// The patterns of the schemas, each as a function.
 fn matches_pattern(pattern: &Value, text: &str) -> bool {
     match pattern.as_str().expect("a pattern") {
-        "^[EWL][0-9]{4}$" => {
-            text.len() == 5 && text.starts_with(['E', 'W', 'L']) && text[1..].bytes().all(|byte| byte.is_ascii_digit())
+        "^[EFLW][0-9]{4}$" => {
+            text.len() == 5
+                && text.starts_with(['E', 'F', 'L', 'W'])
+                && text[1..].bytes().all(|byte| byte.is_ascii_digit())
         }
         "^[a-z]+(-[a-z]+)*$" => {
             text.split('-').all(|word| !word.is_empty() && word.bytes().all(|byte| byte.is_ascii_lowercase()))

@@ -35,6 +35,13 @@ impl<'t> Diff<'t> {
         Self { old, new, ops }
     }
 
+    /// Makes the diff of two texts that are to be compared.
+    pub fn of_texts(old: &'t [u8], new: &'t [u8]) -> Self {
+        let (old, new) = (lines_of(old), lines_of(new));
+        let ops = similar::capture_diff_slices(similar::Algorithm::Myers, &old, &new);
+        Self { old, new, ops }
+    }
+
     /// Writes the diff; nothing when nothing has changed.
     pub fn write(&self, name: &str, out: &mut dyn Write) -> io::Result<()> {
         let hunks = group_diff_ops(self.ops.clone(), CONTEXT);

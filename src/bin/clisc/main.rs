@@ -4,6 +4,7 @@
 
 mod args;
 mod commands;
+mod config;
 mod diff;
 mod disk;
 mod input;
@@ -33,6 +34,7 @@ fn main() -> ExitCode {
 fn run(cli: &Cli) -> anyhow::Result<ExitCode> {
     match &cli.command {
         Command::Check(args) => commands::check::run(args),
+        Command::Lint(args) => commands::lint::run(args),
         Command::Run(args) => commands::run::run(args),
         Command::Ir(args) => commands::ir::run(args),
         Command::Fmt(args) => commands::fmt::run(args),

@@ -7,6 +7,7 @@ mod explain;
 mod fmt;
 mod image;
 mod ir;
+mod lint;
 mod lsp;
 mod man;
 mod report;
@@ -21,6 +22,7 @@ pub use explain::ExplainArgs;
 pub use fmt::FmtArgs;
 pub use image::Precision;
 pub use ir::{DumpFormat, Emit, IrArgs};
+pub use lint::LintArgs;
 pub use lsp::LspArgs;
 pub use man::ManArgs;
 pub use report::ReportFormat;
@@ -55,6 +57,7 @@ pub enum ColorWhen {
 const CLI_EXAMPLES: &str = "\
 Examples:
   clisc check scenes               say what is wrong with the scenes below a folder
+  clisc lint scenes                what is valid and probably not meant
   clisc run i1.cli                 render i1.cli and save its images here
   clisc fmt scenes                 bring the scenes below a folder into their canonical form
   clisc ir i1.cli --emit commands  show what i1.cli was compiled to
@@ -68,6 +71,8 @@ Exit codes: 0 fine, 1 a scene has errors, 2 wrong usage or a fault outside the s
 pub enum Command {
     /// Checks scenes and says what is wrong with them.
     Check(CheckArgs),
+    /// Finds what is valid in scenes and probably not meant, and mends what is safe to mend.
+    Lint(LintArgs),
     /// Renders scenes and saves their images.
     Run(RunArgs),
     /// Shows what a scene becomes at a stage of the compiler.

@@ -7,11 +7,11 @@ use anyhow::Context;
 use clisc::Compilation;
 use clisc::diag::Severity;
 use clisc::diag::words::counted;
-use clisc::exec::refused_names;
 use clisc::ir::Program;
 use clisc::source::Source;
 
 use crate::args::CheckArgs;
+use crate::config::Configs;
 use crate::outcome::Outcome;
 use crate::{input, print};
 
@@ -22,7 +22,9 @@ pub fn run(args: &CheckArgs) -> anyhow::Result<ExitCode> {
     let (scenes, missed) = input::find_all_scenes(&args.paths);
     missed.iter().for_each(|error| tally.miss(error));
     let mut report = print::report(args.format)?;
-    input::for_each_scene(&scenes, check, |_, checked| {
+    let configs = Configs::default();
+    let checked = |path: &Path| check(path, &configs);
+    input::for_each_scene(&scenes, checked, |_, checked| {
         match checked {
             Ok((source, compilation)) => {
                 tally.add(&compilation);
@@ -40,10 +42,9 @@ pub fn run(args: &CheckArgs) -> anyhow::Result<ExitCode> {
 }
 
 /// Checks one scene; its program is not kept.
-fn check(path: &Path) -> anyhow::Result<(Source, Compilation)> {
+fn check(path: &Path, configs: &Configs) -> anyhow::Result<(Source, Compilation)> {
     let source = input::read(path)?;
-    let mut compilation = clisc::compile(&source);
-    compilation.add(refused_names(&compilation.program));
+    let mut compilation = clisc::lint::check(&source, &configs.options_for(path)?);
     compilation.program = Program::default();
     Ok((source, compilation))
 }

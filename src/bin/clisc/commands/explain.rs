@@ -2,8 +2,9 @@
 
 use std::process::ExitCode;
 
-use clisc::diag::{Code, codes};
+use clisc::diag::Code;
 use clisc::format::NOT_CANONICAL;
+use clisc::lint;
 
 use crate::args::ExplainArgs;
 use crate::outcome::Outcome;
@@ -16,22 +17,23 @@ pub fn run(args: &ExplainArgs) -> anyhow::Result<ExitCode> {
         return Ok(Outcome::Fine.into());
     };
     let Some(code) = find(id.trim()) else {
-        let nearest = codes::nearest(id.trim()).map_or_else(String::new, |code| format!("; did you mean {}?", code.id));
+        let nearest =
+            lint::nearest(id.trim()).map_or_else(String::new, |code| format!("; did you mean {}?", code.label()));
         anyhow::bail!("there is no code `{id}`{nearest} (`clisc explain` lists them all)");
     };
     print::to_stdout(&code.page())?;
     Ok(Outcome::Fine.into())
 }
 
-/// Returns the code with this id, of whichever command.
+/// Returns the code with this id or name, of whichever command.
 fn find(id: &str) -> Option<&'static Code> {
-    codes::find(id).or_else(|| Some(&NOT_CANONICAL).filter(|code| code.id.eq_ignore_ascii_case(id)))
+    lint::find(id).or_else(|| Some(&NOT_CANONICAL).filter(|code| code.id.eq_ignore_ascii_case(id)))
 }
 
 fn list() -> String {
-    codes::ALL
-        .iter()
-        .chain([&&NOT_CANONICAL])
-        .map(|code| format!("{}  {:7}  {}\n", code.id, code.severity.word(), code.title))
-        .collect()
+    let line = |code: &Code| {
+        let name = code.name.map_or_else(String::new, |name| format!(" ({name})"));
+        format!("{}  {:7}  {}{name}\n", code.id, code.severity.word(), code.title)
+    };
+    lint::all_codes().chain([&NOT_CANONICAL]).map(line).collect()
 }

@@ -6,6 +6,7 @@ pub mod completions;
 pub mod explain;
 pub mod fmt;
 pub mod ir;
+pub mod lint;
 pub mod lsp;
 pub mod man;
 pub mod run;

@@ -15,6 +15,7 @@ use clisc::diag::render::{Color, render_human};
 use clisc::diag::words::counted;
 use clisc::exec::{CancellationToken, ExecError, Options, check_names, execute};
 use clisc::ir::{self, Command, Valid};
+use clisc::lint::{Options as LintOptions, leave_out_allowed};
 use clisc::plan::Settings;
 use clisc::source::Source;
 
@@ -102,7 +103,8 @@ impl Session<'_> {
     /// Compiles a scene and prints what was found; `None` when it has errors.
     fn compile(&self, source: &Source, stats: &mut SceneStats) -> anyhow::Result<Option<Valid>> {
         let epoch = Instant::now();
-        let compilation = clisc::compile_timed(source, &|| epoch.elapsed());
+        let mut compilation = clisc::compile_timed(source, &|| epoch.elapsed());
+        leave_out_allowed(source, &LintOptions::default(), &mut compilation);
         (stats.parse, stats.lower) = (compilation.times.parse, compilation.times.lower);
         self.print_diagnostics(source, &compilation.diagnostics)?;
         if compilation.has_errors() || !self.args.quiet {

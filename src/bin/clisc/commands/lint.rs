@@ -1,0 +1,167 @@
+//! `clisc lint`.
+
+use std::io::Write;
+use std::path::Path;
+use std::process::ExitCode;
+
+use anyhow::Context;
+use clisc::diag::words::counted;
+use clisc::diag::{Safety, Severity};
+use clisc::lint::{Options, fix_all, lint};
+use clisc::source::Source;
+use clisc::{Compilation, lint as rules};
+
+use crate::args::LintArgs;
+use crate::config::Configs;
+use crate::diff::Diff;
+use crate::outcome::Outcome;
+use crate::{disk, input, print};
+
+/// Lints scenes, on all cores and told of in the order given. A scene that cannot be read or saved does not keep the others
+/// from being linted.
+pub fn run(args: &LintArgs) -> anyhow::Result<ExitCode> {
+    let configs = Configs::default();
+    // A name that is no rule is told before anything is read.
+    choose(args, &mut Options::default())?;
+    let mut tally = Tally::default();
+    let (scenes, missed) = input::find_all_scenes(&args.paths);
+    missed.iter().for_each(|error| tally.miss(error));
+    let mut report = print::report(args.format)?;
+    let linted = |path: &Path| lint_scene(path, args, &configs);
+    let shows_text = args.diff || (args.fix && scenes.iter().any(|path| input::is_stdin(path)));
+    input::for_each_scene(&scenes, linted, |path, result| {
+        match result {
+            Ok(scene) => {
+                scene.show(path, args)?;
+                tally.add(&scene);
+                let Scene { source, found, .. } = &scene;
+                if !shows_text {
+                    let n_unlisted = [Severity::Error, Severity::Warning].map(|severity| found.n_unlisted(severity));
+                    report.add(source, &found.diagnostics, n_unlisted).context(print::CANNOT_WRITE)?;
+                    print::unlisted_to_stderr(source, found);
+                }
+            }
+            Err(error) => tally.miss(&error),
+        }
+        Ok(())
+    })?;
+    if shows_text {
+        drop(report)
+    } else {
+        print::finish(report)?
+    }
+    print::to_stderr(&tally.summary(args));
+    Ok(tally.outcome().into())
+}
+
+/// A scene that has been linted.
+struct Scene {
+    /// With its fixes, if they were asked for.
+    source: Source,
+    found: Compilation,
+    /// The bytes before they were fixed, where that has changed them.
+    original: Option<Vec<u8>>,
+    n_fixes: usize,
+}
+
+/// Lints a scene, and saves it with its fixes if that is asked for.
+fn lint_scene(path: &Path, args: &LintArgs, configs: &Configs) -> anyhow::Result<Scene> {
+    let source = input::read(path)?;
+    let mut options = configs.options_for(path)?;
+    choose(args, &mut options)?;
+    if !args.fix && !args.diff {
+        let found = lint(&source, &options);
+        return Ok(Scene { source, found, original: None, n_fixes: 0 });
+    }
+    let fixed = fix_all(&source, &options);
+    if fixed.n_fixes == 0 {
+        let found = lint(&source, &options);
+        return Ok(Scene { source, found, original: None, n_fixes: 0 });
+    }
+    let original = source.original_bytes().into_owned();
+    if !args.diff && !input::is_stdin(path) {
+        let save = || disk::replace(path, &original, fixed.text.as_bytes());
+        save().with_context(|| format!("cannot save `{}`", path.display()))?;
+    }
+    let source = Source::new(source.name(), fixed.text);
+    let found = lint(&source, &options);
+    Ok(Scene { source, found, original: Some(original), n_fixes: fixed.n_fixes })
+}
+
+/// Takes over which rules the command line asks for.
+fn choose(args: &LintArgs, options: &mut Options) -> Result<(), rules::UnknownRule> {
+    if !args.select.is_empty() {
+        options.select(&args.select)?;
+    }
+    options.ignore(&args.ignore)
+}
+
+impl Scene {
+    /// Prints the changes, or the text of standard input, if that is asked for.
+    fn show(&self, path: &Path, args: &LintArgs) -> anyhow::Result<()> {
+        let mut out = print::stdout();
+        if args.diff {
+            let Some(original) = &self.original else { return Ok(()) };
+            let diff = Diff::of_texts(original, self.source.text().as_bytes());
+            return diff.write(self.source.name(), &mut out).and_then(|()| out.flush()).context(print::CANNOT_WRITE);
+        }
+        if args.fix && input::is_stdin(path) {
+            let text = self.source.original_bytes();
+            return out.write_all(&text).and_then(|()| out.flush()).context(print::CANNOT_WRITE);
+        }
+        Ok(())
+    }
+}
+
+/// What has been found so far.
+#[derive(Debug, Default)]
+struct Tally {
+    n_scenes: usize,
+    n_errors: usize,
+    n_warnings: usize,
+    n_fixed: usize,
+    n_fixable: usize,
+    has_missed: bool,
+}
+
+impl Tally {
+    fn add(&mut self, scene: &Scene) {
+        self.n_scenes += 1;
+        self.n_errors += scene.found.n_errors;
+        self.n_warnings += scene.found.n_warnings;
+        self.n_fixed += scene.n_fixes;
+        let has_error = scene.found.diagnostics.iter().any(|found| found.code.name.is_none());
+        let is_fixable = |fixes: &[clisc::diag::Fix]| fixes.first().is_some_and(|fix| fix.safety == Safety::Safe);
+        if !has_error {
+            self.n_fixable += scene.found.diagnostics.iter().filter(|found| is_fixable(&found.fixes)).count();
+        }
+    }
+
+    /// Tells of a scene that could not be read or saved.
+    fn miss(&mut self, error: &anyhow::Error) {
+        self.has_missed = true;
+        print::to_stderr(&format!("error: {error:#}\n"));
+    }
+
+    fn summary(&self, args: &LintArgs) -> String {
+        let found = format!("{}, {}", counted(self.n_errors, "error"), counted(self.n_warnings, "warning"));
+        let fixed = match (self.n_fixed, args.diff) {
+            (0, _) => String::new(),
+            (n, true) => format!(", {} to be carried out", counted(n, "fix").replace("fixs", "fixes")),
+            (n, false) => format!(", {} carried out", counted(n, "fix").replace("fixs", "fixes")),
+        };
+        let fixable = match self.n_fixable {
+            0 => String::new(),
+            n => format!(", {n} that --fix mends"),
+        };
+        format!("{} linted: {found}{fixed}{fixable}\n", counted(self.n_scenes, "scene"))
+    }
+
+    fn outcome(&self) -> Outcome {
+        match (self.has_missed, self.n_errors + self.n_warnings) {
+            (true, _) => Outcome::Environment,
+            (false, 0) => Outcome::Fine,
+            (false, _) => Outcome::SceneErrors,
+        }
+    }
+}

@@ -1,0 +1,57 @@
+//! `clisc.toml`: the one in the folder of a scene, or in the nearest above it.
+
+use std::collections::HashMap;
+use std::fs;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+use anyhow::Context;
+use clisc::lint::{Options, parse_config};
+
+use crate::input;
+
+/// The name of the file.
+const FILE_NAME: &str = "clisc.toml";
+
+/// The configurations that have been read so far, by the folder of the scenes that they are for.
+#[derive(Debug, Default)]
+pub struct Configs(Mutex<HashMap<PathBuf, Options>>);
+
+impl Configs {
+    /// Returns the options for a scene.
+    ///
+    /// # Errors
+    /// When its configuration cannot be read or is none.
+    pub fn options_for(&self, scene: &Path) -> anyhow::Result<Options> {
+        let folder = match scene.parent() {
+            _ if input::is_stdin(scene) => PathBuf::from("."),
+            None => PathBuf::from("."),
+            Some(folder) if folder == Path::new("") => PathBuf::from("."),
+            Some(folder) => folder.to_owned(),
+        };
+        let file_stem = scene.file_stem().filter(|_| !input::is_stdin(scene));
+        let file_stem = file_stem.map(|stem| stem.to_string_lossy().into_owned());
+        let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(options) = known.get(&folder) {
+            return Ok(options.clone().for_file(file_stem));
+        }
+        let options = read_for(&folder)?;
+        known.insert(folder, options.clone());
+        Ok(options.for_file(file_stem))
+    }
+}
+
+/// Reads the configuration for the scenes of a folder; the default if there is none.
+fn read_for(folder: &Path) -> anyhow::Result<Options> {
+    let Ok(folder) = fs::canonicalize(folder) else { return Ok(Options::default()) };
+    for folder in folder.ancestors() {
+        let path = folder.join(FILE_NAME);
+        match fs::read_to_string(&path) {
+            Ok(text) => return parse_config(&text).with_context(|| format!("`{}`", path.display())),
+            Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {}
+            Err(error) => return Err(error).with_context(|| format!("cannot read `{}`", path.display())),
+        }
+    }
+    Ok(Options::default())
+}
