@@ -2,7 +2,7 @@
 
 use crate::diag::fix::Edit;
 use crate::diag::words::quoted;
-use crate::diag::{Code, Diagnostic, Fix};
+use crate::diag::{Code, Diagnostic, Fix, Safety};
 use crate::lint::options::{Level, Options, UnknownRule, find_rule};
 use crate::lint::rules::unused_allow::UNUSED_ALLOW;
 use crate::source::{Source, Span};
@@ -123,7 +123,7 @@ fn unused(source: &Source, allow: &Allow<'_>) -> Diagnostic {
 
 fn unknown(source: &Source, allow: &Allow<'_>, error: &UnknownRule) -> Diagnostic {
     let rename = match error {
-        UnknownRule::NotFound(_, Some(nearest)) => Some(Fix::write(crate::diag::Safety::Unsafe, allow.name, *nearest)),
+        UnknownRule::NotFound(_, Some(nearest)) => Some(Fix::write(Safety::Unsafe, allow.name, *nearest)),
         UnknownRule::NotFound(_, None) | UnknownRule::IsError(_) => None,
     };
     Diagnostic::new(&UNUSED_ALLOW.code, allow.name, error.to_string())

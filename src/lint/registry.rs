@@ -79,9 +79,9 @@ pub fn nearest(text: &str) -> Option<&'static Code> {
     }
     let lower = text.to_ascii_lowercase();
     let near = all_codes().filter_map(|code| {
-        let (name, share) = code.name.filter(|_| lower.contains('-')).map_or((code.id, 3), |name| (name, 3));
+        let name = code.name.filter(|_| lower.contains('-')).unwrap_or(code.id);
         let distance = strsim::osa_distance(&lower, &name.to_ascii_lowercase());
-        (distance <= name.len() / share).then_some((distance, code))
+        (distance <= name.len() / 3).then_some((distance, code))
     });
     near.min_by_key(|(distance, _)| *distance).map(|(_, code)| code)
 }

@@ -5,11 +5,11 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use anyhow::Context;
+use clisc::Compilation;
 use clisc::diag::words::counted;
-use clisc::diag::{Safety, Severity};
-use clisc::lint::{Options, fix_all, lint};
+use clisc::diag::{Fix, Safety, Severity};
+use clisc::lint::{Options, UnknownRule, fix_all, lint};
 use clisc::source::Source;
-use clisc::{Compilation, lint as rules};
 
 use crate::args::LintArgs;
 use crate::config::Configs;
@@ -89,7 +89,7 @@ fn lint_scene(path: &Path, args: &LintArgs, configs: &Configs) -> anyhow::Result
 }
 
 /// Takes over which rules the command line asks for.
-fn choose(args: &LintArgs, options: &mut Options) -> Result<(), rules::UnknownRule> {
+fn choose(args: &LintArgs, options: &mut Options) -> Result<(), UnknownRule> {
     if !args.select.is_empty() {
         options.select(&args.select)?;
     }
@@ -131,7 +131,7 @@ impl Tally {
         self.n_warnings += scene.found.n_warnings;
         self.n_fixed += scene.n_fixes;
         let has_error = scene.found.diagnostics.iter().any(|found| found.code.name.is_none());
-        let is_fixable = |fixes: &[clisc::diag::Fix]| fixes.first().is_some_and(|fix| fix.safety == Safety::Safe);
+        let is_fixable = |fixes: &[Fix]| fixes.first().is_some_and(|fix| fix.safety == Safety::Safe);
         if !has_error {
             self.n_fixable += scene.found.diagnostics.iter().filter(|found| is_fixable(&found.fixes)).count();
         }
@@ -145,10 +145,11 @@ impl Tally {
 
     fn summary(&self, args: &LintArgs) -> String {
         let found = format!("{}, {}", counted(self.n_errors, "error"), counted(self.n_warnings, "warning"));
-        let fixed = match (self.n_fixed, args.diff) {
-            (0, _) => String::new(),
-            (n, true) => format!(", {} to be carried out", counted(n, "fix").replace("fixs", "fixes")),
-            (n, false) => format!(", {} carried out", counted(n, "fix").replace("fixs", "fixes")),
+        let verb = if args.diff { "to be carried out" } else { "carried out" };
+        let fixed = match self.n_fixed {
+            0 => String::new(),
+            1 => format!(", 1 fix {verb}"),
+            n => format!(", {n} fixes {verb}"),
         };
         let fixable = match self.n_fixable {
             0 => String::new(),
