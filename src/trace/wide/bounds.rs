@@ -295,7 +295,7 @@ impl Bounds {
         let cylinders =
             (0..n_cylinders).map(|i| eye_cylinder(scene, eye, i, &mut faces)).collect::<Option<Vec<_>>>()?;
         let groups = group_spheres(scene, &mut faces);
-        let mirrored: Vec<_> = faces[..n_spheres].iter().map(MirroredSphere::new).collect();
+        let mirrored: Vec<_> = (0..).zip(&faces[..n_spheres]).map(MirroredSphere::new).collect();
         Some(Self {
             groups,
             owners: owners(&faces),
@@ -335,9 +335,8 @@ fn owners(faces: &[Face]) -> Vec<Option<Object>> {
 }
 
 impl MirroredSphere {
-    /// Takes what there is to know from the face.
-    fn new(face: &Face) -> Self {
-        let Object::Sphere(i) = face.object else { unreachable!("a sphere's face") };
+    /// Takes what there is to know from a face, given its number among the faces.
+    fn new((number, face): (u32, &Face)) -> Self {
         let radius_squared = face.radius * face.radius;
         Self {
             center: face.center,
@@ -345,7 +344,7 @@ impl MirroredSphere {
             least: radius_squared * MIN_COSINE * MIN_COSINE,
             is_shell: face.per_radius < 0.0,
             equation: f64::from(face.equation),
-            face: i,
+            face: number,
         }
     }
 }
@@ -398,7 +397,7 @@ impl Bounds {
         let mut faces = Vec::with_capacity(spheres.len());
         let seen = spheres.iter().map(|&i| eye_sphere(&plan.scene, self.eye, i as usize, &mut faces));
         let spheres = seen.collect::<Option<Vec<_>>>()?;
-        let mirrored = faces.iter().map(MirroredSphere::new).collect();
+        let mirrored = (0..).zip(&faces).map(MirroredSphere::new).collect();
         Some(Self { eye: self.eye, faces, spheres, mirrored, ..Self::of_nothing(self.eye_roundoff, self.size) })
     }
 
