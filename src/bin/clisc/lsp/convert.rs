@@ -106,7 +106,8 @@ pub fn markup(text: String, has_markdown: bool) -> MarkupContent {
 
 /// Returns a text beside an entry of a list.
 pub fn documentation(text: String) -> Option<Documentation> {
-    (!text.is_empty()).then(|| Documentation::MarkupContent(MarkupContent { kind: MarkupKind::PlainText, value: text }))
+    (!text.is_empty())
+        .then_some(Documentation::MarkupContent(MarkupContent { kind: MarkupKind::PlainText, value: text }))
 }
 
 /// Returns the name of the file of a document, for messages.
