@@ -49,6 +49,8 @@ pub mod plan;
 
 pub mod trace;
 
+pub mod exact;
+
 pub mod exec;
 
 pub mod format;

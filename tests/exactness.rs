@@ -1,26 +1,28 @@
 //! The tracer gives, in every pixel, what exact arithmetic gives.
 //!
-//! Families of hard scenes are rendered by the tracer and by the oracle, which shares nothing with it but the IR. The
-//! oracle in turn is held against itself and against the original images.
+//! Families of hard scenes are rendered by the tracer and by `exact`, which shares nothing with it but the IR. That in turn
+//! is held against itself and against the original images here, and against analytic cases in `tests/exact.rs`.
 //!
 //! `CLISC_SWEEP=N cargo test --test exactness` takes N seeds of each family, at larger sizes; the name of a family in
 //! `CLISC_FAMILY` leaves out the others.
 
 mod families;
-mod oracle;
 
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
+use clisc::exact::{Pixel, Renderer, Tie};
+use clisc::exec::exact_settings;
 use clisc::ir::{self, Registers, SceneView};
 use clisc::plan::{Part, SampleAt, Settings, Size, plan};
 use clisc::source::Source;
 use clisc::trace::Tracer;
 
+use rayon::prelude::*;
+
 use families::sketch::Sketch;
 use families::{FAMILIES, FINEST, Family};
-use oracle::{Oracle, Pixel, Tie};
 
 /// Seeds of each family in an ordinary run.
 const N_SEEDS: u64 = 3;
@@ -33,7 +35,7 @@ const SWEEP_SIZES: [[u32; 2]; 3] = [[96, 72], [61, 81], [150, 150]];
 /// Pixels of a part B image in which the original differs from exact arithmetic, row 0 left out, for i1 … i10.
 const ORIGINAL_DIFFERENCES: [usize; 10] = [0, 2, 0, 0, 5, 2, 4, 0, 15, 13];
 
-/// A pixel in which the tracer and the oracle differ.
+/// A pixel in which the tracer and `exact` differ.
 struct Difference {
     column: u32,
     row: u32,
@@ -53,9 +55,19 @@ fn trace(view: SceneView<'_>, settings: &Settings) -> Vec<[u8; 3]> {
     rgb.as_chunks().0.to_vec()
 }
 
+fn renderer<'p>(view: SceneView<'p>, settings: &Settings) -> Renderer<'p> {
+    Renderer::new(view, &exact_settings(settings))
+}
+
+/// Renders every pixel, row by row from the top.
+fn pixels(renderer: &Renderer<'_>, size: Size) -> Vec<Pixel> {
+    let n_pixels = size.width() * size.height();
+    (0..n_pixels).into_par_iter().map(|i| renderer.pixel(i % size.width(), i / size.width())).collect()
+}
+
 fn compare(view: SceneView<'_>, settings: &Settings) -> Vec<Difference> {
     let width = settings.size.width();
-    let exact = Oracle::new(view, settings).image();
+    let exact = pixels(&renderer(view, settings), settings.size);
     (0..)
         .zip(trace(view, settings).into_iter().zip(exact))
         .filter(|(_, (traced, exact))| *traced != exact.rgb)
@@ -161,14 +173,14 @@ fn whole(program: &ir::Valid) -> SceneView<'_> {
 }
 
 #[test]
-fn the_oracle_does_not_depend_on_its_precision() {
+fn exact_does_not_depend_on_its_precision() {
     for (title, sketch, size) in cases(FAMILIES).step_by(5).chain(cases(FINEST).step_by(2)) {
         let made = sketch.make();
         let settings = sized(size);
-        let few = Oracle::with_ladder(made.view(), &settings, &[192, 576, 1152, 2304]);
-        let many = Oracle::new(made.view(), &settings);
+        let few = Renderer::with_ladder(made.view(), &exact_settings(&settings), &[192, 576, 1152, 2304]);
+        let many = renderer(made.view(), &settings);
         let width = settings.size.width();
-        for (i, pixel) in (0..).zip(many.image()).step_by(11) {
+        for (i, pixel) in (0..).zip(pixels(&many, settings.size)).step_by(11) {
             let other = few.pixel(i % width, i / width);
             assert_eq!((pixel.rgb, pixel.open_ties), (other.rgb, other.open_ties), "{title} pixel {i}");
         }
@@ -176,27 +188,28 @@ fn the_oracle_does_not_depend_on_its_precision() {
 }
 
 #[test]
-fn the_oracle_does_not_depend_on_its_filter() {
+fn exact_does_not_depend_on_its_filter() {
     for (title, sketch, size) in cases(FAMILIES).step_by(2) {
         let made = sketch.make();
         let settings = sized(size);
-        let unfiltered = Oracle::new(made.view(), &settings).testing_all();
+        let unfiltered = renderer(made.view(), &settings).testing_all();
         let width = settings.size.width();
-        for (i, pixel) in (0..).zip(Oracle::new(made.view(), &settings).image()).step_by(37) {
+        for (i, pixel) in (0..).zip(pixels(&renderer(made.view(), &settings), settings.size)).step_by(37) {
             assert_eq!(pixel.rgb, unfiltered.pixel(i % width, i / width).rgb, "{title} pixel {i}");
         }
     }
 }
 
 #[test]
-fn the_oracle_draws_touching_rays_and_counts_them() {
+fn exact_draws_touching_rays_and_counts_them() {
     let scene = "fov 60\nlight 1 1 1 0 0 5\nsurface 0 .2 0 .4 .1 .1 0 0 0 1 0\nsphere 0 0 -4 1\nwrite i.png\n";
     let program = ir::validate(clisc::compile(&Source::new("scene.cli", scene)).program).expect("a sound program");
-    let oracle = Oracle::new(whole(&program), &sized([300, 300]));
-    let touching = oracle.pixel(138, 84);
-    assert_eq!((touching.rgb, touching.open_ties.of(Tie::Tangent)), ([14, 54, 3], 1));
-    let beside = oracle.pixel(138, 83);
-    assert_eq!((beside.rgb, beside.open_ties.total()), ([0; 3], 0));
+    let exact = renderer(whole(&program), &sized([300, 300]));
+    let touching = exact.pixel(138, 84);
+    assert_eq!((touching.rgb, touching.proved_ties.of(Tie::Tangent)), ([14, 54, 3], 1));
+    assert_eq!(touching.open_ties.total(), 0);
+    let beside = exact.pixel(138, 83);
+    assert_eq!((beside.rgb, beside.proved_ties.total() + beside.open_ties.total()), ([0; 3], 0));
 }
 
 /// Returns the folder of the original scenes, where there is one.
@@ -218,16 +231,16 @@ fn compile_original(folder: &Path, number: usize) -> ir::Valid {
 
 /// In an ordinary run every eleventh pixel, in a sweep all.
 #[test]
-fn the_oracle_paints_the_original_images() {
+fn exact_paints_the_original_images() {
     let Some(folder) = originals() else { return };
     let step = if sweep().is_some() { 1 } else { 11 };
     for (i, &n_allowed) in ORIGINAL_DIFFERENCES.iter().enumerate() {
         let number = i + 1;
         let program = compile_original(&folder, number);
         let original = image::open(folder.join(format!("i{number}.png"))).expect("an original image").to_rgb8();
-        let oracle = Oracle::new(whole(&program), &sized([300, 300]));
+        let exact = renderer(whole(&program), &sized([300, 300]));
         let pixels = (300..300 * 300).step_by(step).map(|i| (i % 300, i / 300));
-        let n_different = pixels.filter(|&(x, y)| original.get_pixel(x, y).0 != oracle.pixel(x, y).rgb).count();
+        let n_different = pixels.filter(|&(x, y)| original.get_pixel(x, y).0 != exact.pixel(x, y).rgb).count();
         assert!(n_different <= n_allowed, "i{number} differs in {n_different} pixels");
         assert!(step > 1 || n_different == n_allowed, "i{number} differs in {n_different} pixels");
     }

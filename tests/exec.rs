@@ -387,7 +387,7 @@ fn pixels_that_a_write_cannot_change_are_kept() {
     let text = format!("{BALL}write a.png\nsphere 1.5 1 -5 .3\nwrite b.png\nsphere 1.5 -1 -5 .3\nwrite c.png\n");
     let [
         Origin::Traced,
-        Origin::SharedWith { write_idx: 0, n_traced_tiles, n_tiles },
+        Origin::SharedWith { write_idx: 0, n_traced_tiles, n_tiles, .. },
         Origin::SharedWith { write_idx: 1, .. },
     ] = origins(&text, &settings)[..]
     else {

@@ -19,13 +19,17 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("compile", &["source", "diag", "syntax", "lower", "ir"]),
     ("plan", &["ir", "math", "source"]),
     ("trace", &["ir", "plan", "math", "image"]),
-    ("exec", &["ir", "plan", "trace", "image", "diag"]),
+    ("exact", &["ir", "image"]),
+    ("exec", &["ir", "plan", "trace", "exact", "image", "diag"]),
     ("format", &["source", "diag", "syntax", "lower", "exec"]),
     ("lint", &["source", "diag", "syntax", "compile", "ir", "plan", "trace", "exec"]),
     ("ide", &["source", "diag", "syntax", "compile", "exec"]),
     (
         "testing",
-        &["source", "diag", "math", "image", "syntax", "ir", "lower", "compile", "plan", "trace", "exec", "format"],
+        &[
+            "source", "diag", "math", "image", "syntax", "ir", "lower", "compile", "plan", "trace", "exact", "exec",
+            "format",
+        ],
     ),
 ];
 

@@ -3,20 +3,20 @@
 //! Each scene says in its head how many pixels a textbook tracer gets wrong, and `docs/stress.md` tells of all of them.
 //! `CLISC_BLESS=1` writes the numbers there, once the golden images exist. `CLISC_SWEEP=1` looks at all pixels instead of some.
 
-mod oracle;
 mod textbook;
 
 use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use clisc::exact::Renderer;
+use clisc::exec::exact_settings;
 use clisc::image::decode_png;
 use clisc::ir::{self, Registers, SceneView};
 use clisc::plan::{Settings, Size};
 use clisc::source::Source;
 use rayon::prelude::*;
 
-use oracle::Oracle;
 use textbook::Textbook;
 
 /// What the line of a scene with its numbers begins with.
@@ -163,11 +163,11 @@ fn the_golden_images_are_exact() {
     for case in cases() {
         let wrong: Vec<_> = case.with_view(|view| {
             let width = case.size.width();
-            let oracle = Oracle::new(view, &Settings { size: case.size, ..Settings::default() });
+            let exact = Renderer::new(view, &exact_settings(&Settings { size: case.size, ..Settings::default() }));
             let pixels = (0..case.golden.len()).into_par_iter().step_by(step);
             pixels
                 .map(|i| (i as u32 % width, i as u32 / width, case.golden[i]))
-                .filter(|&(column, row, golden)| oracle.pixel(column, row).rgb != golden)
+                .filter(|&(column, row, golden)| exact.pixel(column, row).rgb != golden)
                 .collect()
         });
         if !wrong.is_empty() {

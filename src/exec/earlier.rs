@@ -4,6 +4,7 @@
 //! shares pixels with the last one traced gets them from there. Both are kept only where a later `write` has the same field
 //! of view and background, and only within [`MAX_BYTES`] each.
 
+use crate::exec::Proof;
 use crate::ir::{Command, Registers, Valid};
 use crate::plan::{Changes, Pass, Plan, Settings, TileMask};
 use crate::trace::Canvas;
@@ -17,6 +18,8 @@ pub(super) struct Earlier {
     /// What each `write` of the program sees.
     views: Vec<Registers>,
     files: Vec<File>,
+    /// What stands behind the pixels of each image so far.
+    proofs: Vec<Option<Proof>>,
     /// The last image that was traced whole, or in part upon another.
     pixels: Option<(usize, Canvas)>,
 }
@@ -39,7 +42,7 @@ impl Earlier {
                 views.push(registers);
             }
         }
-        Self { views, files: Vec::new(), pixels: None }
+        Self { views, files: Vec::new(), proofs: Vec::new(), pixels: None }
     }
 
     /// Returns how many bytes of the file of a `write` are worth keeping.
@@ -56,6 +59,16 @@ impl Earlier {
         let Some(now) = self.views.get(write_idx) else { return false };
         let shares = |later: &Registers| later.fov_deg == now.fov_deg && later.background == now.background;
         self.views[write_idx + 1..].iter().any(shares)
+    }
+
+    /// Keeps what stands behind the pixels of the next `write`.
+    pub fn keep_proof(&mut self, proof: Option<Proof>) {
+        self.proofs.push(proof);
+    }
+
+    /// Returns what stands behind the pixels of an earlier `write`.
+    pub fn proof(&self, write_idx: usize) -> Option<&Proof> {
+        self.proofs[write_idx].as_ref()
     }
 
     /// Keeps the file of a `write`.
@@ -82,6 +95,10 @@ impl Earlier {
     /// Returns the pixels so far, for an image to be traced upon, with its `write` and the tiles that may differ.
     pub fn shared_pixels(&self, plan: &Plan<'_>) -> Option<(usize, TileMask)> {
         let (write_idx, _) = self.pixels.as_ref()?;
+        if self.proof(*write_idx).is_some_and(Proof::has_ties) {
+            // Which of its ties lie in the pixels to be shared is not known, as not all are listed.
+            return None;
+        }
         match plan.changes_since(&self.views[*write_idx]) {
             Changes::Tiles(mask) => Some((*write_idx, mask)),
             Changes::Nothing | Changes::Everything => None,

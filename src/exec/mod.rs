@@ -10,17 +10,22 @@
 
 mod cancel;
 mod earlier;
+mod exactly;
 mod in_order;
 mod name;
 mod observe;
+mod painter;
 mod pieces;
+mod proof;
 mod sink;
 mod stream;
 mod write;
 
 pub use cancel::CancellationToken;
+pub use exactly::{exact_settings, render_whole};
 pub use name::{Refusal, refuse_name, refused_names};
 pub use observe::{Event, Observer, Origin, WriteReport};
+pub use proof::Proof;
 pub use sink::{ImageRequest, MemoryFile, MemorySink, Sink, SinkError, Step};
 
 use std::io;

@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use crate::exec::Proof;
 use crate::plan::{Savings, Size};
 use crate::trace::Counts;
 
@@ -64,11 +65,13 @@ pub enum Origin {
         n_traced_tiles: usize,
         /// All tiles.
         n_tiles: usize,
+        /// Pixels that are not traced.
+        n_shared_pixels: u64,
     },
 }
 
 /// What a `write` made and what it took.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct WriteReport {
     /// Which `write` of the program it is, from 0.
     pub write_idx: usize,
@@ -84,6 +87,10 @@ pub struct WriteReport {
     pub savings: Savings,
     /// Rays and tests.
     pub counts: Counts,
+    /// What stands behind its pixels, where everything is proved.
+    pub proof: Option<Proof>,
+    /// CRC-32 of the file, where everything is proved.
+    pub crc32: Option<u32>,
     /// Time that threads spent tracing, added up. While they share rows each is counted from the beginning to the end.
     pub trace_time: Duration,
     /// Time that threads spent encoding and writing, added up.

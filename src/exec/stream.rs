@@ -11,11 +11,12 @@ use std::time::Duration;
 use rayon::prelude::*;
 
 use crate::exec::in_order::in_order;
+use crate::exec::painter::Painter;
 use crate::exec::pieces::PieceSize;
 use crate::exec::write::Write;
 use crate::exec::{Event, ExecError, WriteReport};
-use crate::image::{EncodedBand, PngBands, PngWriter};
-use crate::trace::{Counts, Tracer};
+use crate::image::{Crc32, EncodedBand, PngBands, PngWriter};
+use crate::trace::Counts;
 
 /// Threads take bands of their own if there are so many for each: a thread that finds none left waits at most as long as
 /// one takes.
@@ -43,18 +44,19 @@ struct Band {
 
 impl Write<'_> {
     /// Traces the image into `file`.
-    pub(super) fn stream<F>(&self, tracer: &Tracer<'_>, file: F, report: &mut WriteReport) -> Result<F, ExecError>
+    pub(super) fn stream<F>(&self, painter: &Painter<'_, '_>, file: F, report: &mut WriteReport) -> Result<F, ExecError>
     where
         F: io::Write + Send,
     {
         let bands = PngBands::new(report.size.width(), report.size.height()).map_err(|e| self.write_error(e))?;
-        let file = Counted { inner: file, n_bytes: 0 };
+        let is_proved = self.options.settings.precision.is_proved();
+        let file = Counted { inner: file, n_bytes: 0, crc32: is_proved.then(Crc32::default) };
         let png = PngWriter::new(file, &bands).map_err(|error| self.write_error(error))?;
         let mut output = Output { write: self, png, report };
-        if self.are_bands_for_one_thread(&bands) {
-            self.render_bands(tracer, &bands, &mut output)?;
+        if !painter.is_slow() && self.are_bands_for_one_thread(&bands) {
+            self.render_bands(painter, &bands, &mut output)?;
         } else {
-            self.render_together(tracer, &bands, &mut output)?;
+            self.render_together(painter, &bands, &mut output)?;
         }
         output.finish()
     }
@@ -71,7 +73,7 @@ impl Write<'_> {
     /// Lets each thread trace and encode bands of its own.
     fn render_bands<F>(
         &self,
-        tracer: &Tracer<'_>,
+        painter: &Painter<'_, '_>,
         bands: &PngBands,
         output: &mut Output<'_, F>,
     ) -> Result<(), ExecError>
@@ -82,14 +84,14 @@ impl Write<'_> {
         let n_threads = rayon::current_num_threads();
         let n_ahead = (MAX_BYTES_AHEAD / band_bytes).clamp(n_threads + 1, n_threads * BANDS_AHEAD_PER_THREAD);
         let make =
-            |pixels: &mut Vec<u8>, band_idx, band: &mut Band| self.make_band(tracer, bands, band_idx, pixels, band);
+            |pixels: &mut Vec<u8>, band_idx, band: &mut Band| self.make_band(painter, bands, band_idx, pixels, band);
         in_order(bands.n_bands(), n_ahead as u32, make, |band| output.put_band(band))
     }
 
     /// Traces and encodes a band on this thread.
     fn make_band(
         &self,
-        tracer: &Tracer<'_>,
+        painter: &Painter<'_, '_>,
         bands: &PngBands,
         band_idx: u32,
         pixels: &mut Vec<u8>,
@@ -97,14 +99,14 @@ impl Write<'_> {
     ) -> Result<(), ExecError> {
         let rows = bands.rows(band_idx);
         band.end = rows.end;
-        if let Some(color) = tracer.uniform_rows(rows.clone()) {
+        if let Some(color) = painter.uniform_rows(rows.clone()) {
             (band.counts, band.trace_time) = Default::default();
             ((), band.encode_time) = self.timed(|| bands.encode_uniform(band_idx, color, &mut band.encoded));
             return self.check_cancelled();
         }
         pixels.resize(bands.rgb_bytes(&rows), 0);
         let is_cancelled = || self.options.cancellation.is_cancelled();
-        (band.counts, band.trace_time) = self.timed(|| tracer.render_band(rows, pixels, &is_cancelled));
+        (band.counts, band.trace_time) = self.timed(|| painter.render_band(rows, pixels, &is_cancelled));
         self.check_cancelled()?;
         ((), band.encode_time) = self.timed(|| bands.encode(band_idx, pixels, &mut band.encoded));
         Ok(())
@@ -113,7 +115,7 @@ impl Write<'_> {
     /// Lets all threads trace the same rows, some at a time, and then encode the bands that are whole.
     fn render_together<F>(
         &self,
-        tracer: &Tracer<'_>,
+        painter: &Painter<'_, '_>,
         bands: &PngBands,
         output: &mut Output<'_, F>,
     ) -> Result<(), ExecError>
@@ -130,7 +132,7 @@ impl Write<'_> {
             n_rows = rows.end;
             let start = pixels.len();
             pixels.resize(start + bands.rgb_bytes(&rows), 0);
-            let (counts, time) = self.timed(|| self.render_piece(tracer, bands, rows, &mut pixels[start..]));
+            let (counts, time) = self.timed(|| self.render_piece(painter, bands, rows, &mut pixels[start..]));
             self.check_cancelled()?;
             size.adapt(time);
             output.report.counts += counts;
@@ -142,7 +144,7 @@ impl Write<'_> {
     }
 
     /// Lets all threads trace some rows, but for bands that are proved to have one colour.
-    fn render_piece(&self, tracer: &Tracer<'_>, bands: &PngBands, rows: Range<u32>, rgb: &mut [u8]) -> Counts {
+    fn render_piece(&self, painter: &Painter<'_, '_>, bands: &PngBands, rows: Range<u32>, rgb: &mut [u8]) -> Counts {
         let is_cancelled = || self.options.cancellation.is_cancelled();
         let at = |row: u32| bands.rgb_bytes(&(rows.start..row));
         let mut counts = Counts::default();
@@ -152,14 +154,14 @@ impl Write<'_> {
             let band = bands.rows(next / bands.rows_per_band());
             let part = next..band.end.min(rows.end);
             next = part.end;
-            if let Some(color) = tracer.uniform_rows(band) {
+            if let Some(color) = painter.uniform_rows(band) {
                 let before = &mut rgb[at(n_done)..at(part.start)];
-                counts += tracer.render_rows_unless(n_done..part.start, before, &is_cancelled);
+                counts += painter.render_rows(n_done..part.start, before, &is_cancelled);
                 rgb[at(part.start)..at(part.end)].as_chunks_mut().0.fill(color);
                 n_done = part.end;
             }
         }
-        counts += tracer.render_rows_unless(n_done..rows.end, &mut rgb[at(n_done)..], &is_cancelled);
+        counts += painter.render_rows(n_done..rows.end, &mut rgb[at(n_done)..], &is_cancelled);
         counts
     }
 }
@@ -228,20 +230,25 @@ impl<F: io::Write> Output<'_, F> {
         let file = ended.map_err(|error| self.write.write_error(error))?;
         self.report.encode_time += time;
         self.report.n_bytes = file.n_bytes;
+        self.report.crc32 = file.crc32.map(|crc32| crc32.value());
         Ok(file.inner)
     }
 }
 
-/// Counts the bytes on their way to a file.
+/// Counts the bytes on their way to a file, and sums them up where everything is proved.
 struct Counted<F> {
     inner: F,
     n_bytes: u64,
+    crc32: Option<Crc32>,
 }
 
 impl<F: io::Write> io::Write for Counted<F> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let n_written = self.inner.write(bytes)?;
         self.n_bytes += n_written as u64;
+        if let Some(crc32) = &mut self.crc32 {
+            crc32.update(&bytes[..n_written]);
+        }
         Ok(n_written)
     }
 

@@ -4,7 +4,10 @@ use std::io;
 use std::time::Duration;
 
 use crate::exec::earlier::Earlier;
-use crate::exec::{Event, ExecError, ImageRequest, Options, Origin, Sink, SinkError, WriteReport};
+use crate::exec::exactly::Exactly;
+use crate::exec::painter::Painter;
+use crate::exec::{Event, ExecError, ImageRequest, Options, Origin, Proof, Sink, SinkError, WriteReport};
+use crate::image::Crc32;
 use crate::ir::{SceneView, Valid};
 use crate::plan::{Savings, plan};
 use crate::trace::{Counts, Tracer};
@@ -37,6 +40,7 @@ impl Write<'_> {
         let file = sink.create(&ImageRequest { name: self.name, size }).map_err(|error| self.sink_error(error))?;
         let mut report = self.new_report();
         let file = self.fill(view, earlier, file, &mut report)?;
+        earlier.keep_proof(report.proof.clone());
         let (saved, save_time) = self.timed(|| sink.commit(file));
         saved.map_err(|error| self.sink_error(error))?;
         report.save_time = save_time;
@@ -54,18 +58,55 @@ impl Write<'_> {
         report: &mut WriteReport,
     ) -> Result<F, ExecError> {
         if let Some((write_idx, bytes)) = earlier.same_scene(self.write_idx) {
+            report.proof = earlier.proof(write_idx).cloned();
             return self.copy(write_idx, bytes, file, report);
         }
+        let settings = self.options.settings;
+        let exactly = Exactly::new(view, settings);
+        let referee = settings.precision.is_proved().then_some(&exactly);
+        let file = if exactly.makes_all(view, settings) {
+            let file = Kept::new(file, earlier.n_bytes_to_keep(self.write_idx));
+            self.stream(&Painter::Exact(&exactly), file, report)?
+        } else {
+            self.trace(view, referee, earlier, file, report)?
+        };
+        if let Some(bytes) = file.bytes {
+            earlier.keep_file(self.write_idx, bytes);
+        }
+        if report.proof.is_none() {
+            let record = exactly.into_record();
+            report.proof = Proof::new(settings.precision, report, record);
+        }
+        Ok(file.inner)
+    }
+
+    /// Does the work of [`Write::fill`] by the tracer.
+    ///
+    /// `referee`: settles what it leaves open.
+    fn trace<F: io::Write + Send>(
+        &self,
+        view: SceneView<'_>,
+        referee: Option<&Exactly<'_>>,
+        earlier: &mut Earlier,
+        file: F,
+        report: &mut WriteReport,
+    ) -> Result<Kept<F>, ExecError> {
         let plan = plan(view, self.options.settings);
         report.savings = plan.savings();
         if let Some((write_idx, bytes)) = earlier.same_image(&plan) {
-            return self.copy(write_idx, bytes, file, report);
+            report.proof = earlier.proof(write_idx).cloned();
+            return Ok(Kept::new(self.copy(write_idx, bytes, file, report)?, 0));
         }
-        let mut file = Kept::new(file, earlier.n_bytes_to_keep(self.write_idx));
+        let file = Kept::new(file, earlier.n_bytes_to_keep(self.write_idx));
         let shared = earlier.shared_pixels(&plan);
         if let Some((write_idx, changed)) = &shared {
-            let (n_traced_tiles, n_tiles) = (changed.n_tiles(), changed.n_all_tiles());
-            report.origin = Origin::SharedWith { write_idx: *write_idx, n_traced_tiles, n_tiles };
+            let n_pixels = u64::from(report.size.width()) * u64::from(report.size.height());
+            report.origin = Origin::SharedWith {
+                write_idx: *write_idx,
+                n_traced_tiles: changed.n_tiles(),
+                n_tiles: changed.n_all_tiles(),
+                n_shared_pixels: n_pixels - changed.n_pixels(report.size),
+            };
         }
         let canvas = earlier.canvas(self.write_idx, &plan, shared.is_some());
         let tracer = Tracer::new(plan);
@@ -73,11 +114,11 @@ impl Write<'_> {
             Some(canvas) => tracer.upon(canvas, shared.map(|(_, changed)| changed)),
             None => tracer,
         };
-        file = self.stream(&tracer, file, report)?;
-        if let Some(bytes) = file.bytes {
-            earlier.keep_file(self.write_idx, bytes);
-        }
-        Ok(file.inner)
+        let tracer = match referee {
+            Some(referee) => tracer.settled_by(referee),
+            None => tracer,
+        };
+        self.stream(&Painter::Traced(Box::new(tracer)), file, report)
     }
 
     /// Copies the file of an earlier `write`.
@@ -96,6 +137,11 @@ impl Write<'_> {
             written.map_err(|error| self.write_error(error))?;
         }
         report.n_bytes = bytes.len() as u64;
+        if self.options.settings.precision.is_proved() {
+            let mut crc32 = Crc32::default();
+            crc32.update(bytes);
+            report.crc32 = Some(crc32.value());
+        }
         let n_rows = report.size.height();
         self.options.observer.event(&Event::RowsDone { write_idx: self.write_idx, n_rows });
         Ok(file)
@@ -110,6 +156,8 @@ impl Write<'_> {
             origin: Origin::Traced,
             savings: Savings::default(),
             counts: Counts::default(),
+            proof: None,
+            crc32: None,
             trace_time: Duration::ZERO,
             encode_time: Duration::ZERO,
             save_time: Duration::ZERO,

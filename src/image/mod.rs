@@ -6,10 +6,12 @@
 //!
 //! Never here: files, what a pixel's colour is.
 
+mod checksum;
 mod diff;
 mod png;
 mod rgb_image;
 
+pub use checksum::Crc32;
 pub use diff::{Difference, SizeMismatch, WorstPixel, compare, compare_rows, difference_image};
 pub use png::{EncodedBand, PngBands, PngStream, PngWriter};
 pub use rgb_image::{DecodeError, RgbImage, decode_png, encode_png};

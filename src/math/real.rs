@@ -45,8 +45,8 @@ pub trait Real:
     + Sync
     + 'static
 {
-    /// Whether there is no finer arithmetic to ask when this one cannot decide.
-    const IS_FINEST: bool;
+    /// Whether the middle holds more than binary64 can.
+    const IS_DOUBLE_DOUBLE: bool;
 
     /// Makes a number that is known exactly.
     fn exact(value: f64) -> Self;

@@ -36,7 +36,7 @@ pub use inspect::{Inspected, Sight, inspect};
 pub use passes::{Pass, Passes};
 pub use report::{Kept, LeftOut, Reason, Report};
 pub use savings::Savings;
-pub use scene::{CylinderLanes, Light, Primitive, Scene, SphereLanes};
+pub use scene::{CylinderLanes, Light, Primitive, Scene, SphereLanes, is_within_range};
 pub use search::Search;
 pub use settings::{Part, Precision, SampleAt, Settings, Size};
 pub use solid::Faces;

@@ -254,6 +254,27 @@ fn scale_to_unit(view: &SceneView<'_>, cylinders: &[ir::Cylinder]) -> f64 {
     libm::ldexp(1.0, shift.clamp(-1022, 1022))
 }
 
+/// The smallest length, in units of the largest, with which all products of the tracer are good to their bounds: 2⁻⁴⁰⁰.
+/// With it the smallest difference of two lengths is 2⁻⁴⁵³, and its square does not underflow.
+const MIN_EXPONENT: i32 = -400;
+
+/// Tells whether the lengths of what is drawn of a scene lie within the range of the tracer's numbers: scaled as for a
+/// render, none but 0 is below 2⁻⁴⁰⁰. Outside of it pixels are still made, but bounds may not hold.
+#[must_use]
+pub fn is_within_range(view: &SceneView<'_>, part: Part) -> bool {
+    let cylinders = match part {
+        Part::A => &[],
+        Part::B => view.cylinders(),
+    };
+    let scale = scale_to_unit(view, cylinders);
+    let min = libm::ldexp(1.0, MIN_EXPONENT);
+    let is_within = |length: f64| length == 0.0 || (length * scale).abs() >= min;
+    let has_place = |place: DVec3| place.to_array().into_iter().all(is_within);
+    view.spheres().iter().all(|s| has_place(s.center) && is_within(s.radius))
+        && cylinders.iter().all(|c| [c.x, c.z, c.radius, c.y_min, c.y_max].into_iter().all(is_within))
+        && shining(view).all(|light| has_place(light.position))
+}
+
 #[cfg(test)]
 impl Scene<'_> {
     /// Makes a scene of nothing but shapes.

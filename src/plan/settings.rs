@@ -62,13 +62,30 @@ pub enum SampleAt {
 /// Which arithmetic traces pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Precision {
-    /// Binary64, and finer where that does not decide a pixel: every pixel is that of exact arithmetic.
+    /// Binary64, and double-double where that does not decide a pixel. What that cannot decide either is taken for a tie;
+    /// few scenes need more.
     #[default]
     F64,
     /// A draft in binary32, about twice as fast: some channels are a level off, and some pixels at edges are wrong. Images
     /// that binary32 cannot start from, such as those with the eye inside an object, are traced as by
     /// [`Precision::F64`].
     F32,
+    /// As [`Precision::F64`], and arbitrary precision where double-double does not decide a pixel: every pixel but proved
+    /// and listed ties is proved to be that of exact arithmetic.
+    Certified,
+    /// Arbitrary precision for every pixel, by a renderer that shares nothing with the tracer; slow.
+    Exact,
+}
+
+impl Precision {
+    /// Tells whether every pixel is proved, but for ties, which are counted and listed.
+    #[must_use]
+    pub const fn is_proved(self) -> bool {
+        match self {
+            Self::F64 | Self::F32 => false,
+            Self::Certified | Self::Exact => true,
+        }
+    }
 }
 
 /// What a render is asked for.

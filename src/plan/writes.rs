@@ -13,7 +13,7 @@
 //! `write`, and nothing it does in between but to note their numbers.
 
 use crate::ir::Registers;
-use crate::plan::{Candidates, Object, Part, Pass, Plan};
+use crate::plan::{Candidates, Object, Part, Pass, Plan, Size};
 
 /// How an image differs from an earlier one of the same program and settings.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -40,6 +40,18 @@ impl TileMask {
     #[must_use]
     pub fn contains(&self, column: u32, row: u32) -> bool {
         self.has[(row / self.tile_height) as usize * self.n_columns + (column / self.tile_width) as usize]
+    }
+
+    /// Returns how many pixels of an image lie in tiles of the set.
+    #[must_use]
+    pub fn n_pixels(&self, size: Size) -> u64 {
+        let side = |tile: usize, tile_side: u32, side: u32| tile_side.min(side - tile as u32 * tile_side);
+        let pixels_of = |tile_idx: usize| {
+            let columns = side(tile_idx % self.n_columns, self.tile_width, size.width());
+            let rows = side(tile_idx / self.n_columns, self.tile_height, size.height());
+            u64::from(columns) * u64::from(rows)
+        };
+        (0..self.has.len()).filter(|&tile_idx| self.has[tile_idx]).map(pixels_of).sum()
     }
 
     /// Returns how many tiles the image has.

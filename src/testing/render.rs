@@ -8,7 +8,7 @@ use crate::compile;
 use crate::exec::{CancellationToken, ExecError, MemorySink, Options, execute};
 use crate::image::decode_png;
 use crate::ir::{Command, Registers, SceneView, Valid, validate};
-use crate::plan::{Part, SampleAt, Settings, Size, plan};
+use crate::plan::{Part, Precision, SampleAt, Settings, Size, plan};
 use crate::source::Source;
 use crate::trace::Tracer;
 
@@ -19,17 +19,33 @@ const WIDTH: u32 = 8;
 const HEIGHT: u32 = 6;
 
 /// Checks that tiny images of the scene, by the rules of both parts, are the same whether rendered whole, row by row or by
-/// the executor. Lines with errors are left out, and the image is saved once more at the end.
+/// the executor, and that what is certified is what arbitrary precision gives. Lines with errors are left out, and the image
+/// is saved once more at the end.
 ///
 /// # Panics
 /// When they are not, or when anything on the way panics.
 pub fn assert_renders_soundly(bytes: &[u8]) {
     let program = sound_program(bytes);
     let size = Size::new(WIDTH, HEIGHT).expect("a size within the limits");
-    let usual = Settings { size, ..Settings::default() };
+    let usual = Settings { size, precision: Precision::F64, ..Settings::default() };
+    assert_certified_is_exact(&program, &usual);
     assert_cuts_agree(&program, &Settings { part: Part::A, ..usual.clone() });
     assert_cuts_agree(&program, &Settings { samples: 2, sample_at: SampleAt::Centre, max_level: 3, ..usual.clone() });
     assert_cuts_agree(&program, &usual);
+}
+
+/// Checks that the certified images of a program are those of arbitrary precision.
+fn assert_certified_is_exact(program: &Valid, settings: &Settings) {
+    let files = |precision| {
+        let settings = Settings { precision, ..settings.clone() };
+        let mut sink = MemorySink::default();
+        let options = Options { settings: &settings, observer: &(), cancellation: &CancellationToken::new() };
+        match execute(program, options, &mut sink) {
+            Ok(_) | Err(ExecError::Refused(_)) => sink.files,
+            Err(error) => panic!("memory takes every image: {error}"),
+        }
+    };
+    assert!(files(Precision::Certified) == files(Precision::Exact), "what is certified is not right");
 }
 
 /// Compiles the first lines of a scene without those that have errors, and a `write` behind them.

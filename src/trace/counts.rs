@@ -3,7 +3,7 @@
 use std::ops::AddAssign;
 
 /// What a render has done. Pixels settled twice count their rays twice.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Counts {
     /// Rays from the eye.
     pub eye_rays: u64,
@@ -19,7 +19,11 @@ pub struct Counts {
     pub settled_pixels: u64,
     /// Pixels that binary64 could not decide and double-double did.
     pub refined_pixels: u64,
-    /// Decisions that double-double could not make either, made by the rule for ties.
+    /// The largest bound on the error of a channel that was rounded to its byte, in levels, where bounds are kept.
+    pub largest_bound: f64,
+    /// Pixels that were made in arbitrary precision.
+    pub exact_pixels: u64,
+    /// Decisions that the finest arithmetic could not make either, made by the rule for ties.
     pub ties: u64,
 }
 
@@ -32,6 +36,8 @@ impl AddAssign for Counts {
         self.draft_pixels += other.draft_pixels;
         self.settled_pixels += other.settled_pixels;
         self.refined_pixels += other.refined_pixels;
+        self.largest_bound = self.largest_bound.max(other.largest_bound);
+        self.exact_pixels += other.exact_pixels;
         self.ties += other.ties;
     }
 }

@@ -14,24 +14,26 @@ pub struct Doubt;
 pub struct Judge {
     /// What has been done so far.
     pub counts: Counts,
+    /// Whether what cannot be decided is a tie, because there is no finer arithmetic to ask.
+    pub takes_ties: bool,
 }
 
 impl Judge {
     /// Compares a number with 0.
     ///
-    /// What the finest arithmetic cannot decide is a tie and counts as equal. The semantics say what equality means at
+    /// What cannot be decided, where there is no finer arithmetic, is a tie and counts as equal. The semantics say what equality means at
     /// every comparison: a tangent ray and a rim are met, a root at 0 and a light at the distance of a surface are not, of
     /// hits at equal t the first declared is met.
     ///
     /// # Errors
-    /// [`Doubt`] when the bounds allow several answers and a finer arithmetic exists.
+    /// [`Doubt`] when the bounds allow several answers and ties are not taken.
     #[inline]
     pub fn compare_zero<R: Real>(&mut self, number: R) -> Result<Ordering, Doubt> {
         match number.sign() {
             Sign::Negative => Ok(Ordering::Less),
             Sign::Zero => Ok(Ordering::Equal),
             Sign::Positive => Ok(Ordering::Greater),
-            Sign::Unknown if R::IS_FINEST => {
+            Sign::Unknown if self.takes_ties => {
                 self.counts.ties += 1;
                 Ok(Ordering::Equal)
             }
@@ -48,6 +50,13 @@ impl Judge {
         Ok(self.compare_zero(number)?.is_gt())
     }
 
+    /// Notes the bound of a channel that was rounded; one of half a level or more has been clamped for sure.
+    pub fn note_bound(&mut self, error: f64) {
+        if error < 0.5 {
+            self.counts.largest_bound = self.counts.largest_bound.max(error);
+        }
+    }
+
     /// Returns ⌊number⌋; at a tie that of the middle.
     ///
     /// # Errors
@@ -55,7 +64,7 @@ impl Judge {
     pub fn floor<R: Real>(&mut self, number: R) -> Result<f64, Doubt> {
         match number.floor() {
             Some(floor) => Ok(floor),
-            None if R::IS_FINEST => {
+            None if self.takes_ties => {
                 self.counts.ties += 1;
                 Ok(number.value().floor())
             }

@@ -22,6 +22,7 @@ pub mod kernels;
 mod look_up;
 mod pixel;
 mod ray;
+mod referee;
 mod reject;
 mod shade;
 mod unrounded;
@@ -29,7 +30,10 @@ mod wide;
 
 pub use canvas::Canvas;
 pub use counts::Counts;
+pub use referee::Referee;
 pub use unrounded::Unrounded;
+#[cfg(feature = "testing")]
+pub use wide::{fault::Fault, notes::Proved};
 
 use std::ops::Range;
 
@@ -54,6 +58,7 @@ pub struct Tracer<'p> {
     draft: Option<Draft>,
     wide: Option<Wide>,
     upon: Option<Upon<'p>>,
+    referee: Option<&'p dyn Referee>,
 }
 
 /// An earlier image that an image is traced upon.
@@ -97,6 +102,7 @@ impl<'p> Tracer<'p> {
             sampling,
             plan,
             upon: None,
+            referee: None,
         }
     }
 
@@ -105,6 +111,40 @@ impl<'p> Tracer<'p> {
     #[must_use]
     pub fn upon(self, canvas: &'p Canvas, changed: Option<TileMask>) -> Self {
         Self { upon: Some(Upon { canvas, changed }), ..self }
+    }
+
+    /// Leaves to a referee the pixels that double-double does not decide.
+    #[must_use]
+    pub fn settled_by(self, referee: &'p dyn Referee) -> Self {
+        Self { referee: Some(referee), ..self }
+    }
+
+    /// Makes packets wrong on purpose.
+    #[cfg(feature = "testing")]
+    #[must_use]
+    pub fn with_fault(mut self, fault: Fault) -> Self {
+        if let Some(wide) = &mut self.wide {
+            wide.fault = fault;
+        }
+        self
+    }
+
+    /// Calls `visit` with the column, the row and the channels of each pixel that packets prove; of none, if there are no
+    /// packets.
+    #[cfg(feature = "testing")]
+    pub fn for_proved(&self, mut visit: impl FnMut(u32, u32, &Proved)) {
+        let Some(wide) = &self.wide else { return };
+        let mut scratch = wide.scratch(true);
+        for rect in Wide::tiles(&self.plan, 0..self.plan.settings.size.height()) {
+            scratch.notes.iter_mut().for_each(|notes| notes.trail = Some(Vec::new()));
+            wide.trace(&self.plan, &self.sampling, &rect, &mut scratch);
+            for proved in scratch.notes.iter_mut().filter_map(|notes| notes.trail.take()).flatten() {
+                let (column, row) = Wide::pixel_at(&rect, proved.place);
+                if rect.columns.contains(&column) && rect.rows.contains(&row) {
+                    visit(column, row, &proved);
+                }
+            }
+        }
     }
 
     /// Renders `rows` into `rgb`, 3 bytes a pixel, row by row from the top, on all threads of the current rayon pool.
@@ -181,7 +221,7 @@ impl<'p> Tracer<'p> {
             return settler.counts();
         };
         let width = self.plan.settings.size.width() as usize;
-        let mut scratch = wide.scratch();
+        let mut scratch = wide.scratch(self.referee.is_some());
         for rect in Wide::tiles(&self.plan, rows.clone()) {
             if is_cancelled() {
                 break;
@@ -199,7 +239,7 @@ impl<'p> Tracer<'p> {
             });
         }
         let mut counts = settler.counts();
-        counts += scratch.counts;
+        counts += scratch.counts();
         counts
     }
 
@@ -248,7 +288,9 @@ struct Settler<'a, 'p> {
 
 impl<'a, 'p> Settler<'a, 'p> {
     fn new(tracer: &'a Tracer<'p>) -> Self {
-        Self { tracer, coarse: Integrator::new(&tracer.plan), fine: Integrator::new(&tracer.plan) }
+        let mut fine = Integrator::new(&tracer.plan);
+        fine.judge.takes_ties = tracer.referee.is_none();
+        Self { tracer, coarse: Integrator::new(&tracer.plan), fine }
     }
 
     /// Returns the bytes of a pixel.
@@ -257,11 +299,18 @@ impl<'a, 'p> Settler<'a, 'p> {
         self.coarse.judge.counts.settled_pixels += 1;
         let pixel = tracer.sampling.pixel(column, row);
         let among = tracer.plan.tiles.candidates(column, row);
-        pixel::settle(&mut self.coarse, &tracer.camera, &pixel, among).unwrap_or_else(|_| {
+        if let Ok(bytes) = pixel::settle(&mut self.coarse, &tracer.camera, &pixel, among) {
+            return bytes;
+        }
+        if let Ok(bytes) = pixel::settle(&mut self.fine, &tracer.fine_camera, &pixel, among) {
             self.fine.judge.counts.refined_pixels += 1;
-            pixel::settle(&mut self.fine, &tracer.fine_camera, &pixel, among)
-                .expect("the finest arithmetic decides ties by rule")
-        })
+            return bytes;
+        }
+        let referee = tracer.referee.expect("without a referee ties are decided by rule");
+        let (bytes, n_ties) = referee.settle(column, row);
+        self.fine.judge.counts.exact_pixels += 1;
+        self.fine.judge.counts.ties += u64::from(n_ties);
+        bytes
     }
 
     /// Settles all pixels of these rows.

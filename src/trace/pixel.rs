@@ -115,6 +115,7 @@ pub fn quantise<R: Real>(judge: &mut Judge, color: Vector<R>) -> Result<[u8; 3],
     for (byte, channel) in bytes.iter_mut().zip(color.to_array()) {
         let scaled = channel * R::exact(255.0) + R::exact(QUANTISATION_BIAS);
         *byte = judge.floor(scaled)? as u8;
+        judge.note_bound(scaled.error());
     }
     Ok(bytes)
 }

@@ -20,7 +20,9 @@ mod bounds;
 mod cluster;
 mod crowd;
 mod eye;
+pub(super) mod fault;
 mod mirror;
+pub(super) mod notes;
 mod queue;
 mod shade;
 mod shadow;
@@ -39,7 +41,9 @@ use crate::trace::pixel::Sampling;
 use self::bounds::{Bounds, Face, FaceKind};
 use self::crowd::{Around, Few};
 use self::eye::{EyeRays, Nearest, RowSphere};
+use self::fault::Fault;
 use self::mirror::Met;
+use self::notes::Notes;
 use self::queue::{Channels, Number, Packet, Paths, Waiting};
 use self::shade::{Colors, Points};
 use self::shadow::LightOccluders;
@@ -72,6 +76,8 @@ pub(super) struct Wide {
     samples: u32,
     /// Which channels the paths of mirrored colours have.
     channels: Channels,
+    /// What a test makes wrong.
+    pub fault: Fault,
 }
 
 /// A rectangle of pixels inside of one tile of the plan.
@@ -102,7 +108,9 @@ pub(super) struct Scratch {
     /// What is looked up in a crowd: for a packet of hits, and for one of reflected rays.
     around: Around,
     found: Vec<u32>,
-    pub counts: Counts,
+    /// What is noted beside the pixels, if it is asked for.
+    pub notes: Option<Notes>,
+    counts: Counts,
 }
 
 /// The lanes of a packet that meet a face.
@@ -142,11 +150,14 @@ impl Wide {
             step: step.value(),
             background: u32::from_le_bytes([background[0], background[1], background[2], 0]),
             samples: settings.samples,
+            fault: Fault::NONE,
         })
     }
 
     /// Makes what a thread needs.
-    pub fn scratch(&self) -> Scratch {
+    ///
+    /// `takes_notes`: whether notes are asked for.
+    pub fn scratch(&self, takes_notes: bool) -> Scratch {
         Scratch {
             pixels: vec![0; TILE_PIXELS],
             sums: std::array::from_fn(|_| vec![0.0; if self.samples > 1 { TILE_PIXELS } else { 0 }]),
@@ -159,6 +170,7 @@ impl Wide {
             followed: Vec::new(),
             around: Around::default(),
             found: Vec::new(),
+            notes: takes_notes.then(Notes::new),
             counts: Counts::default(),
         }
     }
@@ -185,6 +197,12 @@ impl Wide {
         })
     }
 
+    /// Returns the column and the row of a pixel by its number within a tile; it may lie beyond the image.
+    #[cfg(feature = "testing")]
+    pub fn pixel_at(rect: &Rect, place: usize) -> (u32, u32) {
+        (rect.columns.start + (place % TILE_WIDTH) as u32, rect.rows.start + (place / TILE_WIDTH) as u32)
+    }
+
     /// Traces a tile into the scratch.
     pub fn trace(&self, plan: &Plan<'_>, sampling: &Sampling, rect: &Rect, scratch: &mut Scratch) {
         let among = plan.tiles.candidates(rect.columns.start, rect.rows.start);
@@ -204,6 +222,11 @@ impl Wide {
 }
 
 impl Scratch {
+    /// Returns what has been done so far.
+    pub fn counts(&self) -> Counts {
+        Counts { largest_bound: self.notes.as_ref().map_or(0.0, Notes::largest_bound), ..self.counts }
+    }
+
     /// Writes the pixels of the tile that was traced into an image `width` pixels wide, whose first row is `first_row`.
     pub fn write(&self, rect: &Rect, rgb: &mut [u8], width: usize, first_row: u32) {
         write_pixels(&self.pixels, rect, rgb, width, first_row);
@@ -270,6 +293,7 @@ impl Job for TileJob<'_> {
         for sample in 0..samples * samples {
             self.sample = [sample % samples, sample / samples];
             self.meet::<L>(self.among);
+            self.wide.fault.spoil_roots(&mut self.scratch.t);
             self.scratch.hits.sort_unstable_by_key(|hit| (hit.face, hit.packet));
             self.shade::<L>();
         }
@@ -403,9 +427,22 @@ impl TileJob<'_> {
     /// Writes the pixels of a packet whose colours are found.
     #[inline(always)]
     fn settle_packet<L: Lanes>(&mut self, packet: usize, color: [L; 3], error: L, lanes: L::Mask) {
+        let error = self.wide.fault.bound(error);
         let (bytes, proved) = shade::quantise(color, error);
         bytes.store_whole(lanes & proved, &mut self.scratch.pixels[packet * L::N..]);
+        self.note(numbers::<L>() + L::splat((packet * L::N) as f64), color, error, lanes & proved);
         self.mark_slow::<L>(packet, lanes & !proved);
+    }
+
+    /// Notes what was rounded to bytes, if notes are asked for.
+    #[inline(always)]
+    #[cfg_attr(not(feature = "testing"), allow(unused_variables, reason = "only tests note every pixel"))]
+    fn note<L: Lanes>(&mut self, places: L, color: [L; 3], error: L, lanes: L::Mask) {
+        if let Some(notes) = &mut self.scratch.notes {
+            notes.note_errors(error, lanes);
+            #[cfg(feature = "testing")]
+            notes.note_pixels(places, color, error, lanes);
+        }
     }
 
     /// Adds a packet of samples to their pixels.
@@ -612,11 +649,13 @@ impl TileJob<'_> {
             self.add_up_each(paths.pixel, [color[0], color[1], color[2], error], lanes);
             return;
         }
+        let error = self.wide.fault.bound(error);
         let (bytes, proved) = shade::quantise(color, error);
         self.mark_places(paths.pixel, lanes & !proved);
         let (mut places, mut found) = ([0.0; eye::MAX_LANES], [0; eye::MAX_LANES]);
         paths.pixel.store(&mut places);
         let lanes = lanes & proved;
+        self.note(paths.pixel, color, error, lanes);
         bytes.store_whole(lanes, &mut found);
         let mut rest = lanes.bits();
         while rest != 0 {

@@ -21,6 +21,9 @@ const QUANTISATION_BIAS: f64 = 1.0 / 1_048_576.0;
 /// What the channels of a colour that is exact lose on their way to a byte: four roundings of numbers up to 255, widened.
 const BYTE_ROUNDING: f64 = 1.0 / (1_u64 << 42) as f64;
 
+/// The largest error of a channel that can be rounded to a byte.
+pub(super) const HALF_LEVEL: f64 = 0.5 / 255.5;
+
 /// For P < 1, n·H squared must be above this.
 const MIN_N_DOT_H_SQUARED: f64 = 1.0 / 4096.0;
 
@@ -209,6 +212,11 @@ pub(super) fn quantise<L: Lanes>(color: [L; 3], error: L) -> (L, L::Mask) {
     let (blue, blue_is_sure) = quantise_channel(color[2], error, room);
     let packed = red + green * L::splat(256.0) + blue * L::splat(65536.0);
     (packed, red_is_sure & green_is_sure & blue_is_sure)
+}
+
+/// Returns the bound that [`quantise`] takes for the error of 255 c.
+pub(super) fn bound_in_levels(error: f64) -> f64 {
+    if error > 0.0 { error * 255.5 + BYTE_ROUNDING } else { 0.0 }
 }
 
 /// Returns the byte of a channel, and the lanes in which it is proved.

@@ -99,7 +99,7 @@ fn worst_shares(program: &Valid, settings: &Settings) -> Option<[f64; 2]> {
     let fine_camera: Camera<Ball106> = Camera::new(plan.fov_deg, sampling.steps_per_half_height());
     let wide = Wide::new(&plan, camera.step(), Backend::Scalar)?;
     let mut integrator = Integrator::<Ball106>::new(&plan);
-    let mut scratch = wide.scratch();
+    let mut scratch = wide.scratch(false);
     let mut worst = [0.0_f64; 2];
     for rect in Wide::tiles(&plan, 0..settings.size.height()) {
         let (bounds, scratch, sample) = (&wide.bounds, &mut scratch, [0; 2]);

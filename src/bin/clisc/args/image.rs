@@ -22,9 +22,11 @@ pub struct ImageArgs {
     /// The last level that is shaded: the eye ray has level 0, its reflection level 1, and so on; at most 65535.
     #[arg(long, value_name = "N", default_value_t = 8, value_parser = value_parser!(u32).range(..=i64::from(Settings::MAX_LEVEL)))]
     pub max_level: u32,
-    /// The arithmetic: f64 gives the right pixels; f32 is a faster draft, not exact: of 270,000 channels of a 300x300 scene
-    /// measured, at most 69 were wrong, mostly by one level. --stats counts the pixels that were drafted; several samples,
-    /// more than 512 objects or the eye inside an object make it f64.
+    /// The arithmetic. f64: the right pixels, but where a scene needs numbers finer than double-double. certified: every
+    /// pixel is proved, in arbitrary precision where need be. exact: all of it in arbitrary precision, by another renderer;
+    /// slow. f32: a faster draft; of 270,000 channels of a 300x300 scene measured, at most 69 were wrong, mostly by one
+    /// level. --stats counts the pixels that were drafted; several samples, more than 512 objects or the eye inside an
+    /// object make it f64.
     #[arg(long, value_enum, default_value_t, hide_possible_values = true, ignore_case = true)]
     pub precision: Precision,
     /// Do all the work that clisc can prove needless, or that of the passes named, separated by commas; for comparison,
@@ -102,19 +104,25 @@ impl From<Part> for plan::Part {
 /// Which arithmetic traces pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Precision {
-    /// Binary64, and finer where needed: the right pixels.
-    #[default]
-    F64,
     /// Binary32: a draft.
     F32,
+    /// Binary64, and double-double where needed.
+    #[default]
+    F64,
+    /// As f64, and arbitrary precision where needed: every pixel is proved.
+    Certified,
+    /// Arbitrary precision everywhere.
+    Exact,
 }
 
 impl Precision {
     /// Returns its name on the command line.
     pub fn name(self) -> &'static str {
         match self {
-            Self::F64 => "f64",
             Self::F32 => "f32",
+            Self::F64 => "f64",
+            Self::Certified => "certified",
+            Self::Exact => "exact",
         }
     }
 
@@ -123,6 +131,8 @@ impl Precision {
         match self {
             Self::F32 => 0,
             Self::F64 => 1,
+            Self::Certified => 2,
+            Self::Exact => 3,
         }
     }
 }
@@ -130,8 +140,10 @@ impl Precision {
 impl From<Precision> for plan::Precision {
     fn from(precision: Precision) -> Self {
         match precision {
-            Precision::F64 => Self::F64,
             Precision::F32 => Self::F32,
+            Precision::F64 => Self::F64,
+            Precision::Certified => Self::Certified,
+            Precision::Exact => Self::Exact,
         }
     }
 }

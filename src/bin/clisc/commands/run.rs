@@ -1,5 +1,6 @@
 //! `clisc run`.
 
+mod certificate;
 mod reporter;
 mod stats;
 
@@ -9,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
-use anyhow::Context;
+use anyhow::{Context, bail};
 use clisc::diag::Diagnostic;
 use clisc::diag::render::{Color, render_human};
 use clisc::diag::words::counted;
@@ -19,6 +20,7 @@ use clisc::lint::{Options as LintOptions, leave_out_allowed};
 use clisc::plan::Settings;
 use clisc::source::Source;
 
+use self::certificate::Certificate;
 use self::reporter::Reporter;
 use self::stats::{SceneStats, StatsReport};
 use crate::args::{RunArgs, StatsFormat};
@@ -35,10 +37,15 @@ pub fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
         .use_current_thread()
         .build_global()
         .with_context(|| format!("cannot start {} threads", args.threads))?;
+    let settings = args.image.settings();
+    if args.certificate.is_some() && !settings.precision.is_proved() {
+        bail!("--certificate needs --precision certified or exact: nothing else proves every pixel");
+    }
     let interrupts = Interrupts::listen()?;
     let mut session = Session {
         args,
-        settings: args.image.settings(),
+        certificate: Certificate::new(&settings),
+        settings,
         cancellation: interrupts.token(),
         interrupts,
         sink: DiskSink::new(&args.out_dir),
@@ -59,6 +66,10 @@ pub fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     if args.stats == Some(StatsFormat::Json) {
         print::to_stdout(&report.json()?)?;
     }
+    if let Some(path) = args.certificate.as_ref().filter(|_| !args.dry_run) {
+        disk::save(path, session.certificate.json()?.as_bytes())
+            .with_context(|| format!("cannot save the certificate `{}`", path.display()))?;
+    }
     Ok(report.outcome().into())
 }
 
@@ -69,6 +80,8 @@ struct Session<'a> {
     interrupts: Interrupts,
     cancellation: CancellationToken,
     sink: DiskSink,
+    /// What stands behind the images saved so far.
+    certificate: Certificate,
     /// For each file which scene writes it: its place among the arguments.
     writers: HashMap<PathBuf, usize>,
 }
@@ -92,7 +105,9 @@ impl Session<'_> {
         self.warn_of_shared_files(scene_idx, &program);
         let reporter = Reporter::new(self.args);
         let ended = self.execute(&program, &reporter);
-        stats.add_writes(&self.args.out_dir, &reporter.finish()?);
+        let reports = reporter.finish()?;
+        stats.add_writes(&self.args.out_dir, &reports);
+        self.certificate.add_writes(path, &self.args.out_dir, &reports);
         stats.outcome = match ended {
             Ok(()) => Outcome::Fine,
             Err(error) => self.tell(&source, error)?,

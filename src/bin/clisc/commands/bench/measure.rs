@@ -4,9 +4,12 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use clap::ValueEnum;
+use clisc::exact::Renderer;
+use clisc::exec::{exact_settings, render_whole};
 use clisc::ir::SceneView;
-use clisc::plan::{Settings, Size, plan};
+use clisc::plan::{self, Settings, Size, plan};
 use clisc::trace::{Tracer, Unrounded};
+use rayon::prelude::*;
 
 use super::error::Errors;
 use super::report::{Measured, SceneReport, Times};
@@ -73,8 +76,23 @@ impl Bench<'_> {
 
     /// Returns the image of one mode before rounding, with the bytes of the image that was timed.
     fn unrounded(&self, settings: &Settings, timed: &Timed) -> Unrounded {
-        let unrounded = Tracer::new(plan(self.view, settings)).unrounded();
+        let unrounded = match settings.precision {
+            plan::Precision::Exact => self.unrounded_exactly(settings),
+            _ => Tracer::new(plan(self.view, settings)).unrounded(),
+        };
         Unrounded { rgb: timed.rgb.as_chunks().0.to_vec(), ..unrounded }
+    }
+
+    /// Makes the image in arbitrary precision, before rounding.
+    fn unrounded_exactly(&self, settings: &Settings) -> Unrounded {
+        let renderer = Renderer::new(self.view, &exact_settings(settings));
+        let (width, height) = (settings.size.width(), settings.size.height());
+        let pixels = (0..width * height).into_par_iter().map(|i| {
+            let pixel = renderer.pixel(i % width, i / width);
+            (pixel.rgb, pixel.channels)
+        });
+        let (rgb, levels) = pixels.unzip();
+        Unrounded { rgb, levels }
     }
 
     /// Times each of the settings, all of them in turn, so that what disturbs one disturbs all.
@@ -95,8 +113,7 @@ impl Bench<'_> {
         let start = Instant::now();
         let (width, height) = (settings.size.width(), settings.size.height());
         let mut rgb = vec![0; width as usize * height as usize * 3];
-        let tracer = Tracer::new(plan(self.view, settings));
-        let counts = tracer.render_rows_unless(0..height, &mut rgb, self.is_cancelled);
+        let counts = render_whole(self.view, settings, &mut rgb, self.is_cancelled);
         let time = start.elapsed();
         (!(self.is_cancelled)()).then(|| Timed { rgb, draft_pixels: counts.draft_pixels, times: vec![time] })
     }

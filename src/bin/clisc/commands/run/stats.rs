@@ -153,8 +153,18 @@ impl SceneStats {
         for (what, time) in times {
             let _ = writeln!(table, "  {what:<15} {:>14.6} s", time.as_secs_f64());
         }
-        let Counts { eye_rays, reflected_rays, shadow_rays, tests, draft_pixels, settled_pixels, refined_pixels, ties } =
-            self.counts;
+        let Counts {
+            eye_rays,
+            reflected_rays,
+            shadow_rays,
+            tests,
+            draft_pixels,
+            settled_pixels,
+            refined_pixels,
+            exact_pixels,
+            ties,
+            largest_bound: _,
+        } = self.counts;
         let counts = [
             ("eye rays", eye_rays),
             ("reflected rays", reflected_rays),
@@ -163,6 +173,7 @@ impl SceneStats {
             ("draft pixels", draft_pixels),
             ("settled pixels", settled_pixels),
             ("refined pixels", refined_pixels),
+            ("exact pixels", exact_pixels),
             ("ties", ties),
         ];
         for (what, count) in counts {

@@ -17,8 +17,6 @@ pub enum Tie {
     Order,
     /// Hits of the wall and a cap of one cylinder at equal t. The page does not choose; here the wall is met.
     OwnRim,
-    /// A surface seen edge on: n·d = 0. The normal is not turned.
-    Facing,
     /// A light in the plane of the surface: n·L = 0. It does not count.
     Lit,
     /// A light at the hit point. It does not count.
@@ -29,7 +27,7 @@ pub enum Tie {
 
 impl Tie {
     /// Every kind, in the order of declaration.
-    const ALL: [Self; 11] = [
+    pub const ALL: [Self; 10] = [
         Self::Tangent,
         Self::Start,
         Self::Light,
@@ -37,11 +35,27 @@ impl Tie {
         Self::Rim,
         Self::Order,
         Self::OwnRim,
-        Self::Facing,
         Self::Lit,
         Self::AtLight,
         Self::Quantise,
     ];
+
+    /// Returns the name that certificates use.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Tangent => "tangent",
+            Self::Start => "start",
+            Self::Light => "light",
+            Self::Parallel => "parallel",
+            Self::Rim => "rim",
+            Self::Order => "order",
+            Self::OwnRim => "own-rim",
+            Self::Lit => "lit",
+            Self::AtLight => "at-light",
+            Self::Quantise => "quantise",
+        }
+    }
 }
 
 /// How often each kind of tie was met.
@@ -50,6 +64,7 @@ pub struct Ties([u32; Tie::ALL.len()]);
 
 impl Ties {
     /// Returns the number of ties of one kind.
+    #[must_use]
     pub fn of(&self, tie: Tie) -> u32 {
         self.0[tie as usize]
     }
@@ -60,14 +75,25 @@ impl Ties {
     }
 
     /// Returns the number of ties of all kinds.
+    #[must_use]
     pub fn total(&self) -> u32 {
         self.0.iter().sum()
+    }
+
+    /// Returns those of one of these kinds alone.
+    #[must_use]
+    pub fn only(&self, kinds: &[Tie]) -> Self {
+        Self(std::array::from_fn(|k| if kinds.contains(&Tie::ALL[k]) { self.0[k] } else { 0 }))
+    }
+
+    /// Returns the kinds that were met, each with its number.
+    pub fn met(&self) -> impl Iterator<Item = (Tie, u32)> {
+        Tie::ALL.into_iter().map(|tie| (tie, self.of(tie))).filter(|(_, n)| *n > 0)
     }
 }
 
 impl std::fmt::Debug for Ties {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let met = Tie::ALL.iter().filter(|&&tie| self.of(tie) > 0);
-        f.debug_map().entries(met.map(|&tie| (tie, self.of(tie)))).finish()
+        f.debug_map().entries(self.met()).finish()
     }
 }

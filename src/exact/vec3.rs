@@ -1,6 +1,6 @@
 //! Points and directions of balls.
 
-use super::ball::Ball;
+use crate::exact::ball::Ball;
 
 /// A point or a direction.
 pub type Vec3 = [Ball; 3];

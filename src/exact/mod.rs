@@ -1,0 +1,172 @@
+//! The rigorous renderer: a scene in, the pixels that exact arithmetic gives out, proved.
+//!
+//! It follows the semantics formula by formula in [ball arithmetic](ball), so each comparison is either proved or open. An
+//! open one makes the pixel again with twice the bits ([`LADDER`]); what is still open at the last precision is taken for a
+//! tie, counted, listed with its place, and settled by the rule that the semantics have for equality. There is no epsilon.
+//! Of the ties that ordinary scenes have, eye rays that touch a surface, many are proved by algebra (`grid`).
+//!
+//! One rule is narrower than its text, because the original image of scene i6 says so in pixel (0, 180): the far rim of a
+//! cylinder that a ray touches in passing, leaving the infinite wall as it comes down to the cap, is no hit.
+//!
+//! It settles what `trace` leaves open, makes `reference/`, and is what `trace` is held against. For that it shares
+//! nothing with it but the IR, and takes no short way but one ([`Renderer::testing_all`]). A helper that both used would
+//! hide its faults from the comparison.
+//!
+//! Never here: `plan`, `trace` and `math`; files, the clock.
+
+mod attempt;
+pub mod ball;
+mod grid;
+mod intersect;
+mod reach;
+mod record;
+mod scene;
+mod settings;
+mod shade;
+mod tie;
+mod vec3;
+
+pub use record::{Record, TiePlace};
+pub use settings::{Part, SampleAt, Settings};
+pub use tie::{Tie, Ties};
+
+use std::cell::Cell;
+use std::ops::Range;
+use std::sync::OnceLock;
+
+use rayon::prelude::*;
+
+use crate::exact::attempt::Attempt;
+use crate::exact::scene::{Body, Scene};
+use crate::image::RgbImage;
+use crate::ir::SceneView;
+
+/// The precisions a pixel is tried with, in bits. Mirrors of 10⁻³⁰ of the scene, nine bounces deep, take some 2000.
+pub const LADDER: [usize; 6] = [96, 192, 384, 768, 1536, 3072];
+
+/// Pixels that a thread takes at a time.
+const PIXELS_A_PIECE: usize = 16;
+
+/// One pixel as exact arithmetic gives it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pixel {
+    /// The bytes of the image.
+    pub rgb: [u8; 3],
+    /// 255 c per channel, before rounding down; nearest binary64 numbers to the midpoints.
+    pub channels: [f64; 3],
+    /// A bound on the distance of the truth from the midpoint of any of the channels.
+    pub error: f64,
+    /// The least distance of a channel's 255 c + 2⁻²⁰ to a whole number.
+    pub slack: f64,
+    /// The comparisons of equal quantities that were proved equal by exact operations.
+    pub proved_ties: Ties,
+    /// The comparisons that no precision of the ladder could decide. Without any the pixel is proved.
+    pub open_ties: Ties,
+    /// The precision that gave the pixel.
+    pub bits: usize,
+}
+
+/// Renders one scene exactly.
+#[derive(Debug)]
+pub struct Renderer<'p> {
+    view: SceneView<'p>,
+    settings: Settings,
+    ladder: Vec<usize>,
+    bodies: OnceLock<Vec<Body<'p>>>,
+    /// The scene at each precision of the ladder, once it was asked for.
+    scenes: Vec<OnceLock<Scene>>,
+    tests_all: bool,
+}
+
+impl<'p> Renderer<'p> {
+    /// Prepares a scene for [`LADDER`]. Costs nothing until a pixel is asked for.
+    ///
+    /// # Panics
+    /// When the settings ask for no pixels or no samples.
+    #[must_use]
+    pub fn new(view: SceneView<'p>, settings: &Settings) -> Self {
+        Self::with_ladder(view, settings, &LADDER)
+    }
+
+    /// Prepares a scene for rising precisions of one's own, each at least 53.
+    ///
+    /// # Panics
+    /// As [`Renderer::new`], and when there is no precision.
+    #[must_use]
+    pub fn with_ladder(view: SceneView<'p>, settings: &Settings, ladder: &[usize]) -> Self {
+        assert!(settings.width > 0 && settings.height > 0 && settings.samples > 0, "no pixels or no samples");
+        assert!(!ladder.is_empty(), "no precision");
+        let scenes = ladder.iter().map(|_| OnceLock::new()).collect();
+        let (settings, ladder) = (settings.clone(), ladder.to_vec());
+        Self { view, settings, ladder, bodies: OnceLock::new(), scenes, tests_all: false }
+    }
+
+    /// Tests every ray against every body, without the filter in binary64.
+    #[must_use]
+    pub fn testing_all(self) -> Self {
+        Self { tests_all: true, ..self }
+    }
+
+    /// Renders one pixel.
+    ///
+    /// # Panics
+    /// When it lies outside the image.
+    #[must_use]
+    pub fn pixel(&self, column: u32, row: u32) -> Pixel {
+        assert!(column < self.settings.width && row < self.settings.height, "a pixel outside the image");
+        let bodies = self.bodies.get_or_init(|| scene::bodies(&self.view, self.settings.part));
+        for (i, &bits) in self.ladder.iter().enumerate() {
+            let attempt = Attempt {
+                scene: self.scenes[i].get_or_init(|| Scene::new(&self.view, &self.settings, bits)),
+                bodies,
+                surfaces: self.view.surfaces(),
+                settings: &self.settings,
+                is_last: i + 1 == self.ladder.len(),
+                tests_all: self.tests_all,
+                proved: Cell::default(),
+                open: Cell::default(),
+            };
+            if let Ok(pixel) = attempt.pixel(column, row) {
+                return pixel;
+            }
+        }
+        unreachable!("the last precision leaves nothing open")
+    }
+
+    /// Renders `rows` into `rgb`, 3 bytes a pixel, row by row from the top, on all threads of the current rayon pool, until
+    /// `is_cancelled`, which is asked before each pixel, says so; what is then in `rgb` is no image.
+    ///
+    /// # Panics
+    /// When `rgb` does not hold exactly the pixels of `rows`, or a row lies outside the image.
+    pub fn render_rows(&self, rows: Range<u32>, rgb: &mut [u8], is_cancelled: &(dyn Fn() -> bool + Sync)) -> Record {
+        let width = self.settings.width as usize;
+        assert!(rows.end <= self.settings.height, "a row outside the image");
+        assert_eq!(rgb.len(), rows.len() * width * 3, "another number of pixels");
+        let first = rows.start as usize * width;
+        let pieces = rgb.par_chunks_mut(3 * PIXELS_A_PIECE).enumerate();
+        let records = pieces.map(|(piece_idx, rgb)| {
+            let mut record = Record::default();
+            for (i, rgb) in rgb.chunks_exact_mut(3).enumerate() {
+                if is_cancelled() {
+                    break;
+                }
+                let place = first + piece_idx * PIXELS_A_PIECE + i;
+                let (column, row) = ((place % width) as u32, (place / width) as u32);
+                let pixel = self.pixel(column, row);
+                rgb.copy_from_slice(&pixel.rgb);
+                record.add(column, row, &pixel);
+            }
+            record
+        });
+        records.reduce(Record::default, Record::merged)
+    }
+
+    /// Renders the whole image.
+    #[must_use]
+    pub fn image(&self) -> (RgbImage, Record) {
+        let (width, height) = (self.settings.width, self.settings.height);
+        let mut image = RgbImage::new(width, height);
+        let record = self.render_rows(0..height, image.rgb_mut(), &|| false);
+        (image, record)
+    }
+}

@@ -1,0 +1,104 @@
+//! What was found while pixels were made exactly.
+
+use std::collections::BTreeMap;
+
+use crate::exact::{Pixel, Tie, Ties};
+
+/// A pixel with ties.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TiePlace {
+    /// From the top.
+    pub row: u32,
+    /// From the left.
+    pub column: u32,
+    /// What no precision could decide.
+    pub open: Ties,
+    /// Rays that are proved to touch what they meet, and hits of two bodies that are proved to be at equal t.
+    pub proved: Ties,
+}
+
+impl TiePlace {
+    /// Returns what is to be told of a pixel, if it has ties.
+    #[must_use]
+    pub fn of(column: u32, row: u32, pixel: &Pixel) -> Option<Self> {
+        let place =
+            Self { row, column, open: pixel.open_ties, proved: pixel.proved_ties.only(&[Tie::Tangent, Tie::Order]) };
+        (place.n_ties() > 0).then_some(place)
+    }
+
+    /// Returns the number of ties.
+    #[must_use]
+    pub fn n_ties(&self) -> u32 {
+        self.open.total() + self.proved.total()
+    }
+}
+
+/// What was found while some pixels were made.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Record {
+    /// The pixels that each precision settled, by its bits.
+    pub n_pixels: BTreeMap<usize, u64>,
+    /// The pixels with ties, of which some are listed: those that are open, and those that are proved.
+    pub n_tied_pixels: u64,
+    /// The pixels with open ties: all others are proved.
+    pub n_open_pixels: u64,
+    /// All ties of both kinds.
+    pub n_ties: u64,
+    /// The first pixels with ties, row by row from the top, at most [`Record::MAX_LISTED`].
+    pub ties: Vec<TiePlace>,
+    /// The largest bound on the error of a channel of a pixel without open ties, in levels: of 255 c.
+    pub largest_error: f64,
+}
+
+impl Record {
+    /// The most pixels with ties that are listed: memory does not grow with the image.
+    pub const MAX_LISTED: usize = 10_000;
+
+    /// Adds a pixel.
+    pub fn add(&mut self, column: u32, row: u32, pixel: &Pixel) {
+        *self.n_pixels.entry(pixel.bits).or_default() += 1;
+        if pixel.open_ties.total() == 0 {
+            self.largest_error = self.largest_error.max(pixel.error);
+        } else {
+            self.n_open_pixels += 1;
+        }
+        let Some(place) = TiePlace::of(column, row, pixel) else { return };
+        self.n_tied_pixels += 1;
+        self.n_ties += u64::from(place.n_ties());
+        self.ties.push(place);
+        if self.ties.len() >= 2 * Self::MAX_LISTED {
+            self.keep_first();
+        }
+    }
+
+    /// Takes two records together; which pixels are listed does not depend on the order.
+    #[must_use]
+    pub fn merged(mut self, other: Self) -> Self {
+        self.merge(other);
+        self
+    }
+
+    /// Takes in another record, as [`Record::merged`].
+    pub fn merge(&mut self, other: Self) {
+        for (bits, n_pixels) in other.n_pixels {
+            *self.n_pixels.entry(bits).or_default() += n_pixels;
+        }
+        self.n_tied_pixels += other.n_tied_pixels;
+        self.n_open_pixels += other.n_open_pixels;
+        self.n_ties += other.n_ties;
+        self.largest_error = self.largest_error.max(other.largest_error);
+        self.ties.extend(other.ties);
+        self.keep_first();
+    }
+
+    /// Returns the number of pixels that were made.
+    #[must_use]
+    pub fn n_pixels(&self) -> u64 {
+        self.n_pixels.values().sum()
+    }
+
+    fn keep_first(&mut self) {
+        self.ties.sort_unstable_by_key(|place| (place.row, place.column));
+        self.ties.truncate(Self::MAX_LISTED);
+    }
+}

@@ -1,0 +1,208 @@
+//! A scene, and what of it is needed at one precision.
+
+use std::cmp::Ordering;
+
+use crate::exact::ball::Ball;
+use crate::exact::grid::Grid;
+use crate::exact::reach::Reach;
+use crate::exact::vec3::Vec3;
+use crate::exact::{Part, Settings};
+use crate::ir::{self, SceneView};
+
+/// The equation of a surface, by its exact coefficients.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Equation {
+    /// Centre and radius.
+    Sphere([f64; 4]),
+    /// Axis x, z and radius.
+    Wall([f64; 3]),
+    /// y.
+    Cap(f64),
+}
+
+/// A sphere, or a cylinder, as the IR has it.
+#[derive(Clone, Copy, Debug)]
+pub enum Body<'p> {
+    Sphere(&'p ir::Sphere),
+    Cylinder(&'p ir::Cylinder),
+}
+
+impl Body<'_> {
+    fn order(self) -> u32 {
+        match self {
+            Self::Sphere(sphere) => sphere.order,
+            Self::Cylinder(cylinder) => cylinder.order,
+        }
+    }
+
+    /// Returns the number of its surface.
+    pub fn surface_idx(self) -> usize {
+        match self {
+            Self::Sphere(sphere) => sphere.surface.index(),
+            Self::Cylinder(cylinder) => cylinder.surface.index(),
+        }
+    }
+
+    /// Returns what it is to the filter in binary64.
+    pub fn reach(self) -> Reach {
+        match self {
+            Self::Sphere(s) => Reach { center: s.center.to_array(), radius: s.radius, axes: &[0, 1, 2] },
+            Self::Cylinder(c) => Reach { center: [c.x, 0.0, c.z], radius: c.radius, axes: &[0, 2] },
+        }
+    }
+
+    /// Returns the sphere or the infinite wall, at a precision.
+    pub fn quadric(self, bits: usize) -> Quadric {
+        let Reach { center, radius, axes } = self.reach();
+        let equation = match self {
+            Self::Sphere(_) => Equation::Sphere([center[0], center[1], center[2], radius]),
+            Self::Cylinder(_) => Equation::Wall([center[0], center[2], radius]),
+        };
+        let ball = |number| Ball::exact(number, bits);
+        Quadric { equation, center: center.map(ball), radius: ball(radius), axes }
+    }
+
+    /// Returns the caps, at a precision: of a cylinder the lower and the upper.
+    pub fn caps(self, bits: usize) -> impl Iterator<Item = Cap> {
+        let heights = match self {
+            Self::Sphere(_) => None,
+            Self::Cylinder(c) => Some([(c.y_min, -1.0), (c.y_max, 1.0)]),
+        };
+        heights.into_iter().flatten().map(move |(y, normal)| Cap { y: Ball::exact(y, bits), y_exact: y, normal })
+    }
+
+    /// Returns on which side of the sphere or the infinite wall a point lies: `Less` is inside, `Equal` on it. Nothing is
+    /// rounded here, however long the numbers grow.
+    pub fn side_of(self, point: [f64; 3]) -> Ordering {
+        let Reach { center, radius, axes } = self.reach();
+        let radius = Ball::unrounded(radius);
+        let mut power = -&(&radius * &radius);
+        for &axis in axes {
+            let offset = &Ball::unrounded(point[axis]) - &Ball::unrounded(center[axis]);
+            power = &power + &(&offset * &offset);
+        }
+        power.sign().expect("what is not rounded has a sign")
+    }
+}
+
+/// A sphere |p − c|² = r², or an infinite wall, which leaves out y.
+#[derive(Debug)]
+pub struct Quadric {
+    pub equation: Equation,
+    pub center: Vec3,
+    pub radius: Ball,
+    /// The axes that the equation has.
+    pub axes: &'static [usize],
+}
+
+/// A cap of a cylinder.
+#[derive(Debug)]
+pub struct Cap {
+    pub y: Ball,
+    /// The same, to compare with.
+    pub y_exact: f64,
+    /// The y of the outward normal: −1 for the lower cap, 1 for the upper.
+    pub normal: f64,
+}
+
+/// A light.
+#[derive(Debug)]
+pub struct Light {
+    pub color: Vec3,
+    pub position: Vec3,
+    /// The same, to compare with.
+    pub position_exact: [f64; 3],
+}
+
+/// A surface.
+#[derive(Debug)]
+pub struct Surface {
+    pub ambient: Vec3,
+    pub diffuse: Vec3,
+    pub specular: Vec3,
+    pub shininess: f64,
+    pub reflectance: Ball,
+}
+
+/// Returns the bodies that are drawn, in the order of declaration.
+pub fn bodies<'p>(view: &SceneView<'p>, part: Part) -> Vec<Body<'p>> {
+    let cylinders = match part {
+        Part::A => &[],
+        Part::B => view.cylinders(),
+    };
+    let mut bodies: Vec<_> = view.spheres().iter().map(Body::Sphere).collect();
+    bodies.extend(cylinders.iter().map(Body::Cylinder));
+    bodies.sort_unstable_by_key(|body| body.order());
+    bodies
+}
+
+/// What of a scene is the same for all pixels, at one precision.
+#[derive(Debug)]
+pub struct Scene {
+    pub bits: usize,
+    pub grid: Grid,
+    pub background: Vec3,
+    pub lights: Vec<Light>,
+}
+
+impl Scene {
+    /// Takes what a view shows to `bits` of precision.
+    pub fn new(view: &SceneView<'_>, settings: &Settings, bits: usize) -> Self {
+        let vec3 = |v: glam::DVec3| v.to_array().map(|x| Ball::exact(x, bits));
+        let lights = view.lights().iter().map(|light| Light {
+            color: vec3(light.color),
+            position: vec3(light.position),
+            position_exact: light.position.to_array(),
+        });
+        Self {
+            bits,
+            grid: Grid::new(view.fov_deg(), settings, bits),
+            background: vec3(view.background()),
+            lights: lights.collect(),
+        }
+    }
+}
+
+impl Surface {
+    /// Takes a surface to `bits` of precision.
+    pub fn new(surface: &ir::Surface, bits: usize) -> Self {
+        let vec3 = |v: glam::DVec3| v.to_array().map(|x| Ball::exact(x, bits));
+        Self {
+            ambient: vec3(surface.ambient),
+            diffuse: vec3(surface.diffuse),
+            specular: vec3(surface.specular),
+            shininess: surface.shininess,
+            reflectance: Ball::exact(surface.reflectance, bits),
+        }
+    }
+}
+
+impl Quadric {
+    /// Returns |p − c|² − r²: below 0 inside, 0 on the surface.
+    pub fn at(&self, p: &Vec3) -> Ball {
+        let offset = self.offset(p);
+        &self.dot(&offset, &offset) - &(&self.radius * &self.radius)
+    }
+
+    /// Returns p − c, 0 along y for a wall.
+    pub fn offset(&self, p: &Vec3) -> Vec3 {
+        [0, 1, 2].map(
+            |axis| {
+                if self.axes.contains(&axis) { &p[axis] - &self.center[axis] } else { self.radius.like(0.0) }
+            },
+        )
+    }
+
+    /// Returns the dot product over the equation's axes.
+    pub fn dot(&self, a: &Vec3, b: &Vec3) -> Ball {
+        let products = self.axes.iter().map(|&axis| &a[axis] * &b[axis]);
+        products.reduce(|sum, product| &sum + &product).expect("a quadric has axes")
+    }
+}
+
+impl Cap {
+    /// Turns a length along y so that it is above 0 into the cylinder.
+    pub fn inward(&self, along_y: &Ball) -> Ball {
+        if self.normal < 0.0 { along_y.clone() } else { -along_y }
+    }
+}

@@ -1,0 +1,140 @@
+//! The colour of a ray: what it meets, the lights there, and what is reflected.
+//!
+//! What a doubt leaves open need not matter: a light that may be in shadow or not adds a number between 0 and its full
+//! share, and a reflected ray that cannot be followed has a colour from 0 to 1. Whether that reaches a byte of the pixel is
+//! seen when the channels are rounded; only then are more bits asked for.
+
+use std::cmp::Ordering;
+
+use crate::exact::Part;
+use crate::exact::attempt::{Attempt, Decided, Undecided};
+use crate::exact::ball::Ball;
+use crate::exact::intersect::{Hit, Ray};
+use crate::exact::scene::{Equation, Light, Surface};
+use crate::exact::tie::Tie;
+use crate::exact::vec3::{Vec3, add, divide, dot, negate, scale, sub};
+
+/// A hit with what its shading needs: its point, and the normal turned against the ray.
+struct Meeting<'r> {
+    ray: &'r Ray,
+    /// The equations of the surfaces that it lies on.
+    on: Vec<Equation>,
+    p: Vec3,
+    n: Vec3,
+    level: u32,
+}
+
+impl Attempt<'_> {
+    /// Returns the colour of a ray, clamped.
+    pub fn radiance(&self, ray: &Ray, level: u32) -> Decided<Vec3> {
+        let color = match self.intersect(ray)? {
+            None => self.scene.background.clone(),
+            Some(_) if level > self.settings.max_level => [0.0; 3].map(|zero| self.ball(zero)),
+            Some(hit) => self.shade(ray, hit, level)?,
+        };
+        Ok(color.map(|channel| channel.clamp01()))
+    }
+
+    fn shade(&self, ray: &Ray, hit: Hit, level: u32) -> Decided<Vec3> {
+        let body = self.bodies[hit.body_idx];
+        let surface = Surface::new(&self.surfaces[body.surface_idx()], self.scene.bits);
+        let mut p = ray.at(&hit.t);
+        let mut n = match hit.cap {
+            Some(cap) => {
+                p[1] = cap.y;
+                [0.0, cap.normal, 0.0].map(|component| self.ball(component))
+            }
+            None => {
+                let quadric = body.quadric(self.scene.bits);
+                divide(&quadric.offset(&p), &quadric.radius)
+            }
+        };
+        if hit.is_from_inside {
+            n = negate(&n);
+        }
+        match self.settings.part {
+            Part::A => self.shade_part_a(&surface, &p, &n),
+            Part::B => {
+                let on = [&[hit.equation], &*hit.also].concat();
+                self.shade_part_b(&surface, &Meeting { ray, on, p, n, level })
+            }
+        }
+    }
+
+    /// Part A: c = Σ Cl · Cd · max(0, n·L).
+    fn shade_part_a(&self, surface: &Surface, p: &Vec3, n: &Vec3) -> Decided<Vec3> {
+        let mut color = [0.0; 3].map(|zero| self.ball(zero));
+        for light in &self.scene.lights {
+            let to_light = sub(&light.position, p);
+            let square = dot(&to_light, &to_light);
+            if self.sign(&square, Tie::AtLight)? == Ordering::Equal {
+                continue;
+            }
+            let n_dot_l = (&dot(n, &to_light) / &square.sqrt()).max0();
+            color = std::array::from_fn(|axis| {
+                let term = &(&light.color[axis] * &surface.diffuse[axis]) * &n_dot_l;
+                &color[axis] + &term
+            });
+        }
+        Ok(color)
+    }
+
+    /// Part B: c = Ca + Σ Cl · (Cd · (n·L) + Cs · (n·H)^P) + Krefl · colour(reflected ray).
+    fn shade_part_b(&self, surface: &Surface, meeting: &Meeting<'_>) -> Decided<Vec3> {
+        let Meeting { ray, on, p, n, level } = meeting;
+        let v = divide(&negate(&ray.dir), &dot(&ray.dir, &ray.dir).sqrt());
+        let mut color = surface.ambient.clone();
+        for (light_idx, light) in self.scene.lights.iter().enumerate() {
+            let share = match self.is_lit(meeting, light_idx) {
+                Ok(false) => continue,
+                Ok(true) => self.share_of_light(surface, meeting, &v, light),
+                Err(Undecided) => self.share_of_light(surface, meeting, &v, light).map(|share| share.or_zero()),
+            };
+            color = add(&color, &share);
+        }
+        if surface.reflectance.sign() == Some(Ordering::Greater) {
+            let turned = scale(&dot(n, &ray.dir).double(), n);
+            let reflected = Ray::new(p.clone(), sub(&ray.dir, &turned), on.clone());
+            let radiance = match self.radiance(&reflected, level + 1) {
+                Ok(radiance) => radiance,
+                Err(Undecided) => [0.0; 3].map(|_: f64| self.ball(1.0).or_zero()),
+            };
+            color = add(&color, &scale(&surface.reflectance, &radiance));
+        }
+        Ok(color)
+    }
+
+    /// Tells whether a light counts at a hit.
+    fn is_lit(&self, meeting: &Meeting<'_>, light_idx: usize) -> Decided<bool> {
+        let Meeting { on, p, n, .. } = meeting;
+        let to_light = sub(&self.scene.lights[light_idx].position, p);
+        let square = dot(&to_light, &to_light);
+        if self.sign(&square, Tie::AtLight)? == Ordering::Equal {
+            return Ok(false);
+        }
+        if self.sign(&dot(n, &to_light), Tie::Lit)? != Ordering::Greater {
+            return Ok(false);
+        }
+        Ok(!self.is_occluded(&Ray::new(p.clone(), to_light, on.clone()), light_idx)?)
+    }
+
+    /// Returns Cl · (Cd · (n·L) + Cs · (n·H)^P).
+    fn share_of_light(&self, surface: &Surface, meeting: &Meeting<'_>, v: &Vec3, light: &Light) -> Vec3 {
+        let Meeting { p, n, .. } = meeting;
+        let to_light = sub(&light.position, p);
+        let distance = dot(&to_light, &to_light).sqrt();
+        let n_dot_l = &dot(n, &to_light) / &distance;
+        let highlight = if surface.specular.iter().all(Ball::is_zero) {
+            self.ball(0.0)
+        } else {
+            let l_plus_v = add(&divide(&to_light, &distance), v);
+            let n_dot_h = &dot(n, &l_plus_v) / &dot(&l_plus_v, &l_plus_v).sqrt();
+            n_dot_h.pow(surface.shininess)
+        };
+        std::array::from_fn(|axis| {
+            let diffuse = &surface.diffuse[axis] * &n_dot_l;
+            let specular = &surface.specular[axis] * &highlight;
+            &light.color[axis] * &(&diffuse + &specular)
+        })
+    }
+}

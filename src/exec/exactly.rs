@@ -1,0 +1,99 @@
+//! What the executor asks of `exact`: whole images, or the pixels that the tracer leaves open.
+
+use std::ops::Range;
+use std::sync::{Mutex, PoisonError};
+
+use crate::exact::{self, Record, Renderer, TiePlace};
+use crate::ir::SceneView;
+use crate::plan::{Part, Precision, SampleAt, Settings, is_within_range, plan};
+use crate::trace::{Counts, Referee, Tracer};
+
+/// Says in the words of `exact` what a render is asked for; of the plan's settings its precision and passes mean nothing
+/// there.
+#[must_use]
+pub fn exact_settings(settings: &Settings) -> exact::Settings {
+    exact::Settings {
+        width: settings.size.width(),
+        height: settings.size.height(),
+        part: match settings.part {
+            Part::A => exact::Part::A,
+            Part::B => exact::Part::B,
+        },
+        samples: settings.samples,
+        sample_at: match settings.sample_at {
+            SampleAt::Corner => exact::SampleAt::Corner,
+            SampleAt::Centre => exact::SampleAt::Centre,
+        },
+        max_level: settings.max_level,
+    }
+}
+
+/// Renders a whole image into `rgb`, 3 bytes a pixel, row by row from the top, in the arithmetic that the settings ask for, on
+/// all threads of the current rayon pool, until `is_cancelled` says so; what is then in `rgb` is no image.
+///
+/// # Panics
+/// When `rgb` does not hold exactly the pixels of the image.
+pub fn render_whole(
+    view: SceneView<'_>,
+    settings: &Settings,
+    rgb: &mut [u8],
+    is_cancelled: &(dyn Fn() -> bool + Sync),
+) -> Counts {
+    let exactly = Exactly::new(view, settings);
+    let rows = 0..settings.size.height();
+    if exactly.makes_all(view, settings) {
+        return exactly.render_rows(rows, rgb, is_cancelled);
+    }
+    let tracer = Tracer::new(plan(view, settings));
+    let tracer = if settings.precision.is_proved() { tracer.settled_by(&exactly) } else { tracer };
+    tracer.render_rows_unless(rows, rgb, is_cancelled)
+}
+
+/// The exact renderer of one image, and what it has found.
+#[derive(Debug)]
+pub(super) struct Exactly<'p> {
+    renderer: Renderer<'p>,
+    record: Mutex<Record>,
+}
+
+impl<'p> Exactly<'p> {
+    /// Prepares an image; costs nothing until a pixel is asked for.
+    pub fn new(view: SceneView<'p>, settings: &Settings) -> Self {
+        Self { renderer: Renderer::new(view, &exact_settings(settings)), record: Mutex::default() }
+    }
+
+    /// Tells whether it is to make every pixel: when asked to, or where lengths differ too much for the tracer's numbers, so
+    /// that nothing it says is proved.
+    pub fn makes_all(&self, view: SceneView<'_>, settings: &Settings) -> bool {
+        match settings.precision {
+            Precision::F32 | Precision::F64 => false,
+            Precision::Certified => !is_within_range(&view, settings.part),
+            Precision::Exact => true,
+        }
+    }
+
+    /// Renders rows as [`Renderer::render_rows`] does.
+    pub fn render_rows(&self, rows: Range<u32>, rgb: &mut [u8], is_cancelled: &(dyn Fn() -> bool + Sync)) -> Counts {
+        let record = self.renderer.render_rows(rows, rgb, is_cancelled);
+        let counts = Counts { exact_pixels: record.n_pixels(), ties: record.n_ties, ..Counts::default() };
+        self.note(|total| total.merge(record));
+        counts
+    }
+
+    /// Returns what was found, which does not depend on the order in which pixels were asked for.
+    pub fn into_record(self) -> Record {
+        Record::default().merged(self.record.into_inner().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    fn note(&self, change: impl FnOnce(&mut Record)) {
+        change(&mut self.record.lock().unwrap_or_else(PoisonError::into_inner));
+    }
+}
+
+impl Referee for Exactly<'_> {
+    fn settle(&self, column: u32, row: u32) -> ([u8; 3], u32) {
+        let pixel = self.renderer.pixel(column, row);
+        self.note(|record| record.add(column, row, &pixel));
+        (pixel.rgb, TiePlace::of(column, row, &pixel).map_or(0, |place| place.n_ties()))
+    }
+}

@@ -1,0 +1,238 @@
+//! What is certified is right: in every pixel what `exact` gives, or a tie that is listed.
+//!
+//! A certificate says that an error is below a bound. Bytes alone would show that badly: an error of a billionth changes
+//! one byte in millions. So the channels themselves, before they are rounded, are held against `exact`, each with the bound
+//! that was claimed for it; and then the packets are made wrong on purpose, to see what this finds and what it does not.
+
+mod families;
+
+use std::fs;
+use std::path::Path;
+
+use clisc::exact::{Pixel, Renderer};
+use clisc::exec::{CancellationToken, MemorySink, Options, WriteReport, exact_settings, execute};
+use clisc::image::{RgbImage, decode_png};
+use clisc::ir::{self, Registers, SceneView, Valid};
+use clisc::plan::{Pass, Passes, Precision, Settings, Size, plan};
+use clisc::source::Source;
+use clisc::trace::{Fault, Tracer};
+use rayon::prelude::*;
+
+use families::{FAMILIES, FINEST};
+
+fn sized(width: u32, height: u32) -> Settings {
+    let size = Size::new(width, height).expect("a size within the limits");
+    Settings { size, precision: Precision::Certified, ..Settings::default() }
+}
+
+fn compile(text: &str) -> Valid {
+    let compiled = clisc::compile(&Source::new("scene.cli", text));
+    assert!(!compiled.has_errors(), "{:?}", compiled.diagnostics);
+    ir::validate(compiled.program).expect("a sound program")
+}
+
+fn whole(program: &Valid) -> SceneView<'_> {
+    let mut registers = Registers::default();
+    program.commands.iter().for_each(|command| registers.step(command));
+    SceneView::new(program, registers)
+}
+
+/// Executes a program; returns its reports, and its images by their names.
+fn run(program: &Valid, settings: &Settings) -> Vec<(WriteReport, RgbImage)> {
+    let mut sink = MemorySink::default();
+    let options = Options { settings, observer: &(), cancellation: &CancellationToken::new() };
+    let reports = execute(program, options, &mut sink).expect("memory takes every image");
+    let image = |name: &str| decode_png(&sink.files[name]).expect("a PNG file");
+    reports.into_iter().map(|report| (report.clone(), image(&report.name))).collect()
+}
+
+/// Makes every pixel exactly, row by row.
+fn exact_pixels(view: SceneView<'_>, settings: &Settings) -> Vec<Pixel> {
+    let renderer = Renderer::new(view, &exact_settings(settings));
+    let (width, height) = (settings.size.width(), settings.size.height());
+    (0..width * height).into_par_iter().map(|i| renderer.pixel(i % width, i / width)).collect()
+}
+
+/// Checks one image and its proof against `exact`.
+fn assert_is_certified(title: &str, text: &str, settings: &Settings) {
+    let program = compile(text);
+    let (report, image) = run(&program, settings).pop().expect("an image");
+    let exact = exact_pixels(whole(&program), settings);
+    let wrong = (0..).zip(image.rgb().as_chunks().0).zip(&exact).filter(|((_, rgb), exact)| **rgb != exact.rgb);
+    let wrong: Vec<_> = wrong.map(|((i, rgb), exact)| (i, *rgb, exact)).collect();
+    assert!(wrong.is_empty(), "{title}: {} pixels are wrong\n{:?}\n{text}", wrong.len(), &wrong[..wrong.len().min(3)]);
+
+    let proof = report.proof.expect("everything is proved");
+    let n_pixels = proof.n_binary64 + proof.n_double_double + proof.exact.n_pixels() + proof.n_shared;
+    assert_eq!(n_pixels, exact.len() as u64, "{title}");
+    assert!(proof.largest_bound < 0.5, "{title}: a bound of {} levels", proof.largest_bound);
+    // Every tie of the image is a tie to `exact` too; the tracer may prove a pixel that `exact` leaves open.
+    let width = settings.size.width();
+    for place in &proof.exact.ties {
+        let pixel = &exact[(place.row * width + place.column) as usize];
+
+        assert_eq!(pixel.open_ties, place.open, "{title} at ({}, {})", place.column, place.row);
+    }
+}
+
+#[test]
+fn every_family_is_certified_the_finest_among_them() {
+    for family in FAMILIES.iter().chain(FINEST) {
+        for seed in [0, 7] {
+            assert_is_certified(&format!("{} seed {seed}", family.name), &family.sketch(seed).text(), &sized(30, 23));
+        }
+    }
+}
+
+#[test]
+fn every_scene_under_stress_is_certified() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/stress");
+    for entry in fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        let text = fs::read_to_string(&path).expect("a scene in UTF-8");
+        assert_is_certified(&path.display().to_string(), &text, &sized(20, 15));
+    }
+}
+
+#[test]
+fn what_the_tracer_cannot_scale_is_left_to_exact() {
+    // The speck is 10⁻³⁰⁰ of the ball behind it: scaled to its size it would be nothing.
+    let text = "light 1 1 1 0 0 5e-150\nsurface .1 .1 .1 .5 .5 .5 0 0 0 1 0\nsphere 0 0 -4e-150 1e-150\n\
+                surface .1 0 0 .9 0 0 0 0 0 1 .5\nsphere 0 0 -4e150 1e150\nwrite i.png\n";
+    assert_is_certified("speck before a giant", text, &sized(16, 12));
+    let (report, image) = run(&compile(text), &sized(16, 12)).pop().expect("an image");
+    assert_eq!(report.proof.map(|proof| proof.exact.n_pixels()), Some(16 * 12));
+    assert_eq!(image.pixel(8, 6), [153; 3]);
+}
+
+/// With k² = 1/3 some eye rays touch this ball; no finite precision can tell, but algebra can.
+const TOUCHED: &str = "fov 60\nlight 1 1 1 0 0 5\nsurface 0 .2 0 .4 .1 .1 0 0 0 1 0\nsphere 0 0 -4 1\n";
+
+#[test]
+fn ties_are_listed_in_the_proof() {
+    let program = compile(&format!("{TOUCHED}write i.png\n"));
+    let (report, image) = run(&program, &sized(300, 300)).pop().expect("an image");
+    let proof = report.proof.expect("everything is proved");
+    let places: Vec<_> = proof.exact.ties.iter().map(|place| (place.column, place.row)).collect();
+    assert!(places.contains(&(138, 84)), "{places:?}");
+    assert_eq!((image.pixel(138, 84), image.pixel(138, 83)), ([14, 54, 3], [0; 3]));
+    assert_eq!(report.counts.ties, proof.exact.n_ties);
+    assert!(proof.is_complete(), "all are proved to touch");
+}
+
+#[test]
+fn the_proof_of_a_copy_is_that_of_its_original() {
+    let program = compile(&format!("{TOUCHED}write a.png\nwrite b.png\nsphere 0 0 9 1\nwrite c.png\n"));
+    for precision in [Precision::Certified, Precision::Exact] {
+        let settings = Settings { precision, ..sized(60, 60) };
+        let images = run(&program, &settings);
+        let (first, _) = &images[0];
+        for (report, _) in &images {
+            assert_eq!((&report.proof, report.crc32), (&first.proof, first.crc32), "{}", report.name);
+        }
+    }
+}
+
+#[test]
+fn shared_pixels_are_counted_and_ties_are_never_shared() {
+    let plain = "light 1 1 1 0 0 5\nsurface 0 .2 0 .4 .1 .1 0 0 0 1 0\nsphere -.77 .1 -4.3 .71\nwrite a.png\n\
+                 sphere 1.1 0 -5 .3\nwrite b.png\n";
+    let images = run(&compile(plain), &sized(200, 150));
+    let proof = images[1].0.proof.as_ref().expect("everything is proved");
+    assert!(proof.n_shared > 0, "{proof:?}");
+    let all = proof.n_binary64 + proof.n_double_double + proof.exact.n_pixels() + proof.n_shared;
+    assert_eq!(all, 200 * 150);
+
+    let tied = format!("{TOUCHED}write a.png\nsphere 1.6 0 -5 .1\nwrite b.png\n");
+    let images = run(&compile(&tied), &sized(300, 300));
+    let proofs: Vec<_> =
+        images.iter().map(|(report, _)| report.proof.as_ref().expect("everything is proved")).collect();
+    assert!(proofs[0].exact.n_tied_pixels > 0 && proofs[1].n_shared == 0, "{proofs:?}");
+    assert_eq!(proofs[0].exact.ties, proofs[1].exact.ties);
+}
+
+#[test]
+fn a_certified_image_does_not_depend_on_passes() {
+    let settings = sized(60, 45);
+    for family in FAMILIES.iter().chain(FINEST).step_by(4) {
+        let program = compile(&family.sketch(3).text());
+        let usual = run(&program, &settings).pop().expect("an image").1;
+        for passes in [Passes::none(), Passes::all().without(Pass::Tiles)] {
+            let other = run(&program, &Settings { passes, ..settings.clone() }).pop().expect("an image").1;
+            assert!(usual == other, "{}", family.name);
+        }
+    }
+}
+
+/// What an audit of the packets' claims finds.
+#[derive(Debug, Default)]
+struct Audit {
+    n_channels: usize,
+    /// Channels off by more than was claimed.
+    n_beyond: usize,
+    /// Bytes that are not those of `exact`.
+    n_wrong_bytes: usize,
+    /// The largest share of its bound that a channel is off.
+    worst_share: f64,
+}
+
+/// Holds every channel that packets prove in scenes of many families against `exact`, with the packets made wrong.
+fn audit(fault: Fault) -> Audit {
+    let mut audit = Audit::default();
+    let settings = sized(40, 30);
+    for name in ["ordinary", "crowd", "balls on a ball of 1e6", "hall of mirrors", "stacked cylinders", "specks"] {
+        let family = FAMILIES.iter().find(|family| family.name == name).expect("a family of this name");
+        let made = family.sketch(5).make();
+        let renderer = Renderer::new(made.view(), &exact_settings(&settings));
+        let tracer = Tracer::new(plan(made.view(), &settings)).with_fault(fault);
+        tracer.for_proved(|column, row, proved| {
+            let exact = renderer.pixel(column, row);
+            for (channel, truth) in proved.color.into_iter().zip(exact.channels) {
+                let channel = channel.clamp(0.0, 1.0) * 255.0;
+                // The truth is rounded to binary64, and so is what is compared with it: four roundings of 255.
+                let off = (channel - truth).abs() - exact.error - 255.0 * 4.0 * f64::EPSILON;
+                audit.n_channels += 1;
+                audit.n_beyond += usize::from(off > proved.error * 255.0);
+                audit.n_wrong_bytes +=
+                    usize::from((channel + 1.0 / 1_048_576.0).floor() != (truth + 1.0 / 1_048_576.0).floor());
+                if off > 0.0 {
+                    audit.worst_share = audit.worst_share.max(off / (proved.error * 255.0));
+                }
+            }
+        });
+    }
+    audit
+}
+
+#[test]
+fn every_bound_of_the_packets_holds() {
+    let sound = audit(Fault::NONE);
+    assert!(sound.n_channels > 5_000, "{sound:?}");
+    assert_eq!((sound.n_beyond, sound.n_wrong_bytes), (0, 0), "{sound:?}");
+}
+
+#[test]
+fn faults_beyond_the_bounds_are_caught_by_channels_where_bytes_do_not_show_them() {
+    let perturbed = audit(Fault { root_factor: 1.0 + 1e-9, ..Fault::NONE });
+    assert!(perturbed.n_beyond > 1000, "{perturbed:?}");
+    assert_eq!(perturbed.n_wrong_bytes, 0, "an audit of bytes would have missed it: {perturbed:?}");
+    let flushed = audit(Fault { root_mask: !0xffff, ..Fault::NONE });
+    assert!(flushed.n_beyond > 100, "{flushed:?}");
+    // A bound can shrink by what it has to spare, and stays true; by more, and it does not.
+    let spare = audit(Fault::NONE).worst_share;
+    let shrunk = audit(Fault { bound_factor: 0.5 * spare, ..Fault::NONE });
+    assert!(spare > 1e-4 && shrunk.n_beyond > 0, "{spare} {shrunk:?}");
+}
+
+#[test]
+fn large_faults_are_caught_by_bytes_too() {
+    let perturbed = audit(Fault { root_factor: 1.01, ..Fault::NONE });
+    assert!(perturbed.n_wrong_bytes > 100, "{perturbed:?}");
+}
+
+#[test]
+fn a_low_bit_stays_within_the_bounds() {
+    // The last bit of a root is less than what the bounds allow for its rounding: nothing is beyond them, no byte changes.
+    let flushed = audit(Fault { root_mask: !1, ..Fault::NONE });
+    assert_eq!((flushed.n_beyond, flushed.n_wrong_bytes), (0, 0), "{flushed:?}");
+}
