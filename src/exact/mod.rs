@@ -8,7 +8,7 @@
 //! One rule is narrower than its text, because the original image of scene i6 says so in pixel (0, 180): the far rim of a
 //! cylinder that a ray touches in passing, leaving the infinite wall as it comes down to the cap, is no hit.
 //!
-//! It settles what `trace` leaves open, makes `reference/`, and is what `trace` is held against. For that it shares
+//! It settles what `trace` leaves open, and is what `trace` is held against. For that it shares
 //! nothing with it but the IR, and takes no short way but one ([`Renderer::testing_all`]). A helper that both used would
 //! hide its faults from the comparison.
 //!
