@@ -13,6 +13,7 @@ mod lsp;
 mod outcome;
 mod print;
 mod progress;
+mod threads;
 mod version;
 
 use std::process::ExitCode;

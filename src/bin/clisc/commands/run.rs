@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
-use anyhow::{Context, bail};
+use anyhow::bail;
 use clisc::diag::Diagnostic;
 use clisc::diag::render::{Color, render_human};
 use clisc::diag::words::counted;
@@ -27,16 +27,11 @@ use crate::args::{RunArgs, StatsFormat};
 use crate::disk::{self, DiskSink};
 use crate::interrupt::Interrupts;
 use crate::outcome::Outcome;
+use crate::threads::Threads;
 use crate::{input, print};
 
 /// Renders scenes and saves their images. A fault in one scene does not keep the others from being rendered.
 pub fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
-    // The main thread is one of them: with one thread none is started, and work begins before the others are awake.
-    rayon::ThreadPoolBuilder::new()
-        .num_threads(args.threads.into())
-        .use_current_thread()
-        .build_global()
-        .with_context(|| format!("cannot start {} threads", args.threads))?;
     let settings = args.image.settings();
     if args.certificate.is_some() && !settings.precision.is_proved() {
         bail!("--certificate needs --precision certified or exact: nothing else proves every pixel");
@@ -50,8 +45,9 @@ pub fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
         interrupts,
         sink: DiskSink::new(&args.out_dir),
         writers: HashMap::new(),
+        threads: Threads::new(args.threads, args.scenes.len()),
     };
-    let mut report = StatsReport::new(rayon::current_num_threads());
+    let mut report = StatsReport::new();
     for (scene_idx, path) in args.scenes.iter().enumerate() {
         let stats = session.run_scene(scene_idx, path)?;
         if args.stats == Some(StatsFormat::Table) {
@@ -64,6 +60,7 @@ pub fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
         }
     }
     if args.stats == Some(StatsFormat::Json) {
+        report.threads = rayon::current_num_threads();
         print::to_stdout(&report.json()?)?;
     }
     if let Some(path) = args.certificate.as_ref().filter(|_| !args.dry_run) {
@@ -84,6 +81,7 @@ struct Session<'a> {
     certificate: Certificate,
     /// For each file which scene writes it: its place among the arguments.
     writers: HashMap<PathBuf, usize>,
+    threads: Threads,
 }
 
 impl Session<'_> {
@@ -93,6 +91,7 @@ impl Session<'_> {
     /// When results cannot be printed.
     fn run_scene(&mut self, scene_idx: usize, path: &Path) -> anyhow::Result<SceneStats> {
         let mut stats = SceneStats::new(path);
+        self.threads.start_for_file(path)?;
         let source = match input::read(path) {
             Ok(source) => source,
             Err(error) => {
@@ -102,6 +101,7 @@ impl Session<'_> {
             }
         };
         let Some(program) = self.compile(&source, &mut stats)? else { return Ok(stats) };
+        self.threads.start_for_images(&program, &self.settings)?;
         self.warn_of_shared_files(scene_idx, &program);
         let reporter = Reporter::new(self.args);
         let ended = self.execute(&program, &reporter);

@@ -19,7 +19,8 @@ const VERSION: u32 = 1;
 #[derive(Debug, Serialize)]
 pub struct StatsReport {
     version: u32,
-    threads: usize,
+    /// How many rendered.
+    pub threads: usize,
     /// One for each scene, in the order of the command line.
     pub scenes: Vec<SceneStats>,
 }
@@ -81,9 +82,9 @@ fn seconds<S: Serializer>(time: &Duration, serializer: S) -> Result<S::Ok, S::Er
 }
 
 impl StatsReport {
-    /// Makes the report of a call that renders with `n_threads`.
-    pub fn new(n_threads: usize) -> Self {
-        Self { version: VERSION, threads: n_threads, scenes: Vec::new() }
+    /// Makes the report of a call that has not rendered yet.
+    pub fn new() -> Self {
+        Self { version: VERSION, threads: 0, scenes: Vec::new() }
     }
 
     /// Returns the worst outcome.
