@@ -102,7 +102,7 @@ impl<'p> Scene<'p> {
                 .collect(),
             surfaces: view.surfaces(),
             spheres: lay_out_spheres(view.spheres(), scale),
-            sphere_primitives: (view.spheres().iter())
+            sphere_primitives: (view.spheres().par_iter().with_min_len(SPHERES_PER_TASK))
                 .map(|s| Primitive { surface: s.surface, order: s.order })
                 .collect(),
             sphere_equations: equations.spheres[..view.spheres().len()].into(),
@@ -210,14 +210,21 @@ pub(super) fn shines(light: &ir::Light) -> bool {
     light.color != DVec3::ZERO
 }
 
+/// Spheres that a thread lays out at a time.
+const SPHERES_PER_TASK: usize = 8192;
+
 fn lay_out_spheres(spheres: &[ir::Sphere], scale: f64) -> SphereLanes {
-    let lane = |coordinate: fn(&ir::Sphere) -> f64| spheres.iter().map(|s| coordinate(s) * scale).collect();
-    SphereLanes {
-        x: lane(|s| s.center.x),
-        y: lane(|s| s.center.y),
-        z: lane(|s| s.center.z),
-        radius: lane(|s| s.radius),
-    }
+    let lane = || vec![0.0; spheres.len()];
+    let mut lanes = SphereLanes { x: lane(), y: lane(), z: lane(), radius: lane() };
+    let SphereLanes { x, y, z, radius } = &mut lanes;
+    let [x, y, z, radius] = [x, y, z, radius].map(|lane| lane.par_chunks_mut(SPHERES_PER_TASK));
+    x.zip(y).zip(z.zip(radius)).enumerate().for_each(|(i, ((x, y), (z, radius)))| {
+        for (k, sphere) in spheres[i * SPHERES_PER_TASK..][..x.len()].iter().enumerate() {
+            [x[k], y[k], z[k]] = (sphere.center * scale).to_array();
+            radius[k] = sphere.radius * scale;
+        }
+    });
+    lanes
 }
 
 fn lay_out_cylinders(cylinders: &[ir::Cylinder], scale: f64) -> CylinderLanes {
@@ -240,9 +247,10 @@ const MAX_EXPONENT: i32 = 450;
 /// sun does not make the rest vanish, as long as they do not overflow.
 fn scale_to_unit(view: &SceneView<'_>, cylinders: &[ir::Cylinder]) -> f64 {
     let largest_of = |lengths: &[f64]| lengths.iter().fold(0.0, |largest: f64, length| largest.max(length.abs()));
-    let spheres = view.spheres().iter().map(|s| s.center.abs().max_element().max(s.radius));
+    let spheres = view.spheres().par_iter().with_min_len(SPHERES_PER_TASK);
+    let spheres = spheres.map(|s| s.center.abs().max_element().max(s.radius)).reduce(|| 0.0, f64::max);
     let walls = cylinders.iter().map(|c| largest_of(&[c.x, c.z, c.radius]));
-    let largest = spheres.chain(walls).fold(0.0, f64::max);
+    let largest = walls.fold(spheres, f64::max);
 
     let heights = cylinders.iter().map(|c| largest_of(&[c.y_min, c.y_max]));
     let lights = shining(view).map(|light| light.position.abs().max_element());

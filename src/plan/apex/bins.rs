@@ -46,7 +46,8 @@ pub struct Bins {
 const PARALLEL_FROM: usize = 8192;
 
 impl Bins {
-    /// Sorts objects into the cells of a grid of `n_columns` and `n_rows`, by counting.
+    /// Sorts objects into the cells of a grid of `n_columns` and `n_rows`, by counting: few nearest first, many as they come,
+    /// since neighbours then mostly go to neighbouring cells, and each cell afterwards.
     ///
     /// `cells(i)`: those of object i. The order in a cell is by `near`, then by index, on any number of threads.
     ///
@@ -54,14 +55,16 @@ impl Bins {
     /// When the lists have 2³² indices or more together.
     pub fn new(n_objects: usize, [n_columns, n_rows]: [u32; 2], cells: impl Fn(usize) -> Cells + Send + Sync) -> Self {
         let (n_columns, n_rows) = (n_columns as usize, n_rows as usize);
-        let blocks = nearest_first(n_objects, cells);
         let n_bands = if n_objects < PARALLEL_FROM { 1 } else { rayon::current_num_threads() * 2 };
         let band_rows = n_rows.div_ceil(n_bands);
+        let order = (n_objects < PARALLEL_FROM).then(|| nearest_first(n_objects, &cells));
+        let at = |place: usize| order.as_ref().map_or(place as u32, |order| order[place]);
+        let blocks = || (0..n_objects).map(at).map(|i| (cells(i as usize), i));
         let band = |i: usize| Band { rows: i * band_rows..n_rows.min((i + 1) * band_rows), n_columns };
 
         let mut starts = vec![0; n_columns * n_rows + 1];
         let counts = starts[1..].par_chunks_mut(band_rows * n_columns);
-        counts.enumerate().for_each(|(i, counts)| band(i).count(&blocks, counts));
+        counts.enumerate().for_each(|(i, counts)| band(i).count(blocks(), counts));
         accumulate(&mut starts);
 
         let mut indices = vec![0; starts[n_columns * n_rows] as usize];
@@ -73,7 +76,8 @@ impl Bins {
             parts.push((band, starts, part));
             rest = others;
         }
-        parts.into_par_iter().for_each(|(band, starts, part)| band.fill(&blocks, starts, part));
+        let is_sorted = order.is_some();
+        parts.into_par_iter().for_each(|(band, starts, part)| band.fill(blocks(), is_sorted, starts, part));
         Self { starts, indices }
     }
 
@@ -88,19 +92,17 @@ impl Bins {
     }
 }
 
-/// Returns the blocks of all objects that have one with the objects' indices, nearest first.
-fn nearest_first(n_objects: usize, cells: impl Fn(usize) -> Cells + Send + Sync) -> Vec<(Cells, u32)> {
+/// Returns the indices of all objects, nearest first.
+fn nearest_first(n_objects: usize, cells: impl Fn(usize) -> Cells) -> Vec<u32> {
+    let mut entries: Vec<_> = (0..n_objects).map(|i| entry(&cells(i), i as u32)).collect();
+    entries.sort_unstable();
+    entries.into_iter().map(|entry| entry as u32).collect()
+}
+
+/// Returns a number that is larger for what is farther or, at the same depth, has a higher index.
+fn entry(block: &Cells, i: u32) -> u64 {
     // Numbers that are not negative are ordered as their bits are.
-    let key = |(cells, i): &(Cells, u32)| u64::from(cells.near.to_bits()) << 32 | u64::from(*i);
-    let block = |i: usize| Some((cells(i), i as u32)).filter(|(cells, _)| !cells.is_none());
-    if n_objects < PARALLEL_FROM {
-        let mut blocks: Vec<_> = (0..n_objects).filter_map(block).collect();
-        blocks.sort_unstable_by_key(key);
-        return blocks;
-    }
-    let mut blocks: Vec<_> = (0..n_objects).into_par_iter().filter_map(block).collect();
-    blocks.par_sort_unstable_by_key(key);
-    blocks
+    u64::from(block.near.to_bits()) << 32 | u64::from(i)
 }
 
 /// Turns counts behind a 0 into starts and the end of the last.
@@ -124,32 +126,40 @@ impl Band {
         let [first, last] = block.rows.map(usize::from);
         let [left, right] = block.columns.map(usize::from);
         let (top, n_columns) = (self.rows.start, self.n_columns);
-        (first.max(top)..(last + 1).min(self.rows.end)).map(move |row| {
+        let end = if block.is_none() { top } else { (last + 1).min(self.rows.end) };
+        (first.max(top)..end).map(move |row| {
             let start = (row - top) * n_columns;
             start + left..start + right + 1
         })
     }
 
     /// Counts the blocks in each cell.
-    fn count(&self, blocks: &[(Cells, u32)], counts: &mut [u32]) {
+    fn count(&self, blocks: impl Iterator<Item = (Cells, u32)>, counts: &mut [u32]) {
         for (block, _) in blocks {
-            for cells in self.cells(block) {
+            for cells in self.cells(&block) {
                 counts[cells].iter_mut().for_each(|count| *count += 1);
             }
         }
     }
 
     /// Writes the lists of the cells, whose starts are given and the end of the last.
-    fn fill(&self, blocks: &[(Cells, u32)], starts: &[u32], indices: &mut [u32]) {
+    fn fill(&self, blocks: impl Iterator<Item = (Cells, u32)>, is_sorted: bool, starts: &[u32], indices: &mut [u32]) {
+        let mut entries = vec![0; indices.len()];
         let mut next: Vec<u32> = starts.iter().map(|start| start - starts[0]).collect();
         for (block, i) in blocks {
-            for cells in self.cells(block) {
+            let entry = entry(&block, i);
+            for cells in self.cells(&block) {
                 for next in &mut next[cells] {
-                    indices[*next as usize] = *i;
+                    entries[*next as usize] = entry;
                     *next += 1;
                 }
             }
         }
+        let start = |cell: usize| (starts[cell] - starts[0]) as usize;
+        for cell in (0..starts.len() - 1).filter(|_| !is_sorted) {
+            entries[start(cell)..start(cell + 1)].sort_unstable();
+        }
+        indices.iter_mut().zip(entries).for_each(|(index, entry)| *index = entry as u32);
     }
 }
 
