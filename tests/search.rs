@@ -23,12 +23,18 @@ struct Crowd {
     depths: [f64; 2],
     /// One object in so many is a cylinder.
     cylinders: usize,
+    /// The radius of a sphere around the eye, 0 for none.
+    around: f64,
 }
 
 fn sketch(crowd: &Crowd, stream: &mut Stream) -> Sketch {
     let mut sketch = Sketch::new(60.0, [0.2, 0.3, 0.5]);
     for position in [[3.0, 4.0, 1.0], [-0.3, 0.2, -3.0], [0.0, 0.0, 0.0], [0.0, -9.0, -4.0]] {
         sketch.light([0.4, 0.3, 0.2], position);
+    }
+    if crowd.around > 0.0 {
+        sketch.surface(finish(stream));
+        sketch.sphere([0.1, -0.2, 0.3], crowd.around);
     }
     let centers: Vec<[f64; 3]> = (0..4).map(|_| place(stream, crowd.depths)).collect();
     for i in 0..crowd.n_objects {
@@ -76,9 +82,25 @@ fn render(sketch: &Sketch, passes: Passes) -> (Search, Vec<u8>) {
     (search, rgb)
 }
 
+/// Most pixels of crowds are traced wide, those with cylinders and with a sphere around the eye too.
+#[test]
+fn crowds_are_traced_wide() {
+    let usual =
+        Crowd { n_objects: 900, sizes: [0.02, 0.2], cluster: 1.0, depths: [-9.0, -2.0], cylinders: 4, around: 0.0 };
+    for (seed, crowd) in (0..).zip([usual, Crowd { around: 30.0, ..usual }, Crowd { cylinders: 5000, ..usual }]) {
+        let made = sketch(&crowd, &mut Stream::new(seed)).make();
+        let size = Size::new(200, 150).expect("a size within the limits");
+        let mut rgb = vec![0; 200 * 150 * 3];
+        let counts =
+            Tracer::new(plan(made.view(), &Settings { size, ..Settings::default() })).render_rows(0..150, &mut rgb);
+        assert!(counts.settled_pixels < 200 * 150 / 20, "{crowd:?}: {}", counts.settled_pixels);
+    }
+}
+
 #[test]
 fn searching_changes_no_pixel() {
-    let usual = Crowd { n_objects: 300, sizes: [0.02, 0.2], cluster: 1.0, depths: [-9.0, -2.0], cylinders: 4 };
+    let usual =
+        Crowd { n_objects: 300, sizes: [0.02, 0.2], cluster: 1.0, depths: [-9.0, -2.0], cylinders: 4, around: 0.0 };
     let crowds = [
         usual,
         Crowd { n_objects: 90, sizes: [0.2, 1.0], ..usual },
@@ -90,6 +112,10 @@ fn searching_changes_no_pixel() {
         Crowd { n_objects: 200, sizes: [0.01, 20.0], ..usual },
         Crowd { n_objects: 400, sizes: [0.01, 0.5], depths: [-3.0, 3.0], ..usual },
         Crowd { n_objects: 100, sizes: [2.0, 30.0], depths: [-3.0, 3.0], cylinders: 2, ..usual },
+        Crowd { n_objects: 900, sizes: [0.02, 0.3], cylinders: 2, ..usual },
+        Crowd { n_objects: 700, sizes: [0.02, 0.3], cylinders: 3, around: 30.0, ..usual },
+        Crowd { n_objects: 700, sizes: [0.02, 0.3], cylinders: 5, around: 7.0, ..usual },
+        Crowd { n_objects: 600, sizes: [0.01, 0.6], depths: [-3.0, 3.0], cylinders: 3, around: 12.0, ..usual },
     ];
     for (seed, crowd) in (0..).zip(&crowds) {
         let sketch = sketch(crowd, &mut Stream::new(seed));

@@ -29,6 +29,7 @@ mod tiles;
 mod tree;
 mod writes;
 
+pub use apex::{Expect, Look};
 pub use bodies::Region;
 pub use candidates::{Candidates, Object, ObjectLists};
 pub use dump::{dump_plans, dump_plans_json};
@@ -42,7 +43,7 @@ pub use settings::{Part, Precision, SampleAt, Settings, Size};
 pub use solid::Faces;
 pub use terms::{Exponent, Terms};
 pub use tiles::Tiles;
-pub use tree::SearchRay;
+pub use tree::{Beam, Boxes, MeetBoxes, OneByOne, SearchRay};
 pub use writes::{Changes, TileMask};
 
 use crate::ir::{Handle, Registers, SceneView, Surface};
@@ -177,12 +178,55 @@ impl Plan<'_> {
         self.around_lights.visit_between(light_idx, from_light, error, visit)
     }
 
+    /// Calls `add` with where to look for what lies between a light and some points; `None` as for
+    /// [`Plan::visit_between`]. Points that see the light in about the same direction are looked up as one.
+    ///
+    /// `from_light`: from the light to each point, and how far each of its coordinates may be off.
+    #[inline]
+    pub fn looks_from(
+        &self,
+        light_idx: usize,
+        from_light: impl Iterator<Item = ([f64; 3], f64)>,
+        add: impl FnMut(Look),
+    ) -> Option<()> {
+        self.around_lights.get(light_idx)?.looks(from_light, add)
+    }
+
+    /// Asks for the memory that some looks, each with its light, will need, one after the other.
+    #[inline]
+    pub fn expect_looks<E: Expect>(&self, looks: &[(usize, Look)]) {
+        let cubes = || looks.iter().filter_map(|(light_idx, look)| Some((self.around_lights.get(*light_idx)?, look)));
+        cubes().for_each(|(cube, look)| cube.expect_cells::<E>(look));
+        cubes().for_each(|(cube, look)| cube.expect_records::<E>(look));
+    }
+
+    /// Calls `visit` with each object that may have a point strictly between a light and one of the points of a look from
+    /// there, and with some that lie beside. An object may come several times.
+    #[inline]
+    pub fn visit_look(&self, light_idx: usize, look: &Look, visit: impl FnMut(Object)) {
+        if let Some(cube) = self.around_lights.get(light_idx) {
+            cube.visit_look(look, visit);
+        }
+    }
+
+    /// Tells whether what may lie between a light and a point is looked up, if the point is known well enough.
+    #[must_use]
+    pub fn looks_between(&self) -> bool {
+        self.around_lights.are_known()
+    }
+
+    /// Tells whether what a reflected ray may meet is looked up, if the ray is known well enough.
+    #[must_use]
+    pub fn looks_along(&self) -> bool {
+        self.along_rays.are_known()
+    }
+
     /// Calls `visit` with each object that a reflected ray may meet, roughly from near to far, and is told by it up to which
     /// t meetings still matter, below 0 for none; `None` when they are not looked up: then [`Plan::mirrored`] is to be
     /// tested.
-    #[inline]
-    pub fn visit_along(&self, ray: &SearchRay, visit: impl FnMut(Object) -> f64) -> Option<()> {
-        self.along_rays.visit_along(ray, visit)
+    #[inline(always)]
+    pub fn visit_along<M: MeetBoxes>(&self, ray: &SearchRay, visit: impl FnMut(Object) -> f64) -> Option<()> {
+        self.along_rays.visit_along::<M>(ray, visit)
     }
 
     /// Returns what a reflected ray can meet.

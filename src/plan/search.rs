@@ -1,7 +1,7 @@
 //! How rays find what they may meet.
 
 use crate::plan::apex::Cube;
-use crate::plan::tree::{Forest, SearchRay};
+use crate::plan::tree::{Forest, MeetBoxes, SearchRay};
 use crate::plan::{Object, Part, Pass, Scene, Settings};
 
 /// How rays other than those from the eye find what they may meet.
@@ -50,6 +50,16 @@ impl AroundLights {
     ) -> Option<bool> {
         self.0.get(light_idx)?.visit(from_light, error, visit)
     }
+
+    /// Returns what surrounds a light, if it is known.
+    pub fn get(&self, light_idx: usize) -> Option<&Cube> {
+        self.0.get(light_idx)
+    }
+
+    /// Tells whether shadow rays look there.
+    pub fn are_known(&self) -> bool {
+        !self.0.is_empty()
+    }
 }
 
 /// What reflected rays can meet.
@@ -70,8 +80,14 @@ impl AlongRays {
         Self(is_used.then(|| Forest::new(scene)))
     }
 
+    /// Tells whether reflected rays look there.
+    pub fn are_known(&self) -> bool {
+        self.0.is_some()
+    }
+
     /// See [`Plan::visit_along`](crate::plan::Plan::visit_along).
-    pub fn visit_along(&self, ray: &SearchRay, visit: impl FnMut(Object) -> f64) -> Option<()> {
-        self.0.as_ref()?.visit(ray, visit)
+    #[inline(always)]
+    pub fn visit_along<M: MeetBoxes>(&self, ray: &SearchRay, visit: impl FnMut(Object) -> f64) -> Option<()> {
+        self.0.as_ref()?.visit::<M>(ray, visit)
     }
 }

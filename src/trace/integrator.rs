@@ -100,13 +100,13 @@ impl<'a, 'p, R: Real> Integrator<'a, 'p, R> {
         &mut self,
         ray: &Ray<R>,
         among: Candidates<'_>,
-        test: impl FnOnce(&mut Self, &Ray<R>, Candidates<'_>) -> T,
-    ) -> T {
+        test: impl FnOnce(&mut Self, &Ray<R>, Candidates<'_>) -> Result<T, Doubt>,
+    ) -> Result<T, Doubt> {
         if ray.leaving.is_none() {
             return test(self, ray, among);
         }
         let mut found = mem::take(&mut self.found);
-        let answer = test(self, ray, look_up::along(self.plan, ray, &mut found, among));
+        let answer = look_up::along(self.plan, ray, &mut found, among).and_then(|among| test(self, ray, among));
         self.found = found;
         answer
     }

@@ -1,7 +1,11 @@
 //! What a secondary ray of a scene of many objects may meet.
 
+use std::marker::PhantomData;
+
 use crate::math::Real;
-use crate::plan::{Candidates, Object, ObjectLists, Plan, Scene, SearchRay};
+use crate::plan::{Beam, Boxes, Candidates, Expect, MeetBoxes, Object, ObjectLists, OneByOne, Plan, Scene, SearchRay};
+use crate::trace::judge::Doubt;
+use crate::trace::kernels::{Mask, SingleLanes, prefetch};
 use crate::trace::ray::Ray;
 use crate::trace::reject::PlainRay;
 
@@ -11,20 +15,71 @@ const ROUNDOFF: f64 = f64::EPSILON / 2.0;
 /// What bounds on sure meetings are widened by, far more than their roundings.
 const WIDEN: f64 = 1.0 + 1e-9;
 
+/// Tests a beam against all boxes of a group at once.
+#[derive(Clone, Copy, Debug)]
+pub struct SideBySide<S>(PhantomData<S>);
+
+impl<S: SingleLanes> MeetBoxes for SideBySide<S> {
+    #[inline(always)]
+    fn meet(boxes: &Boxes, beam: &Beam) -> ([f32; 16], u32) {
+        let (mut near, mut far) = (S::splat(0.0), S::same(beam.t_max));
+        for k in 0..3 {
+            let inverse = beam.inverse[k];
+            let (enter, leave) =
+                if inverse >= 0.0 { (&boxes.low[k], &boxes.high[k]) } else { (&boxes.high[k], &boxes.low[k]) };
+            let entered = (S::load(enter) - S::same(beam.ahead[k])) * S::same(inverse);
+            let left = (S::load(leave) - S::same(beam.behind[k])) * S::same(inverse);
+            (near, far) = (entered.max(near), left.min(far));
+        }
+        let mut nears = [0.0; 16];
+        near.store(&mut nears);
+        (nears, near.le(far).bits())
+    }
+}
+
+impl<S> Expect for SideBySide<S> {
+    #[inline(always)]
+    fn expect<T>(items: &[T], i: usize) {
+        prefetch(items, i);
+    }
+}
+
+/// With so many candidates a ray that is too vague to be looked up is not tested in any arithmetic but the finest: the test
+/// would take longer than that, and end in doubt.
+const MANY: usize = 1024;
+
+/// Directions that are off by a larger share, 2⁻¹², are vague.
+const VAGUE: f64 = 1.0 / 4096.0;
+
+/// Returns all candidates of a ray for which the plan has nothing to look up, or too little is known.
+///
+/// # Errors
+/// [`Doubt`] when finer arithmetic can look them up.
+fn unless_vague<R: Real>(looks_up: bool, all: Candidates<'_>) -> Result<Candidates<'_>, Doubt> {
+    if looks_up && !R::IS_DOUBLE_DOUBLE && all.len() > MANY { Err(Doubt) } else { Ok(all) }
+}
+
 /// Lists what a reflected ray may meet; `unless_found` when the plan does not look it up.
+///
+/// # Errors
+/// [`Doubt`] when there are many objects and too little is known of the ray.
 pub fn along<'a, R: Real>(
     plan: &Plan<'_>,
     ray: &Ray<R>,
     found: &'a mut ObjectLists,
     unless_found: Candidates<'a>,
-) -> Candidates<'a> {
+) -> Result<Candidates<'a>, Doubt> {
     let plain_ray = ray.plain();
     let PlainRay { origin, dir, origin_error, dir_error, .. } = plain_ray;
+    let speed = dir.into_iter().fold(0.0, |speed: f64, d| speed.max(d.abs()));
+    if !R::IS_DOUBLE_DOUBLE && dir_error > VAGUE * speed {
+        return unless_vague::<R>(plan.looks_along(), unless_found);
+    }
     found.clear();
     let leaving = ray.leaving.map(|leaving| leaving.equation);
     let mut matters = f64::INFINITY;
     let search_ray = SearchRay { origin, dir, origin_error, dir_error };
-    let looked_up = plan.visit_along(&search_ray, |object| {
+    let looked_up = plan.visit_along::<OneByOne>(&search_ray, |object| {
         found.push(object);
         if let Object::Sphere(i) = object
             && leaving != Some(plan.scene.sphere_equations[i as usize])
@@ -34,21 +89,24 @@ pub fn along<'a, R: Real>(
         matters
     });
     match looked_up {
-        Some(()) => found.as_candidates(),
-        None => unless_found,
+        Some(()) => Ok(found.as_candidates()),
+        None => unless_vague::<R>(plan.looks_along(), unless_found),
     }
 }
 
 /// Lists what may lie between a light and where a shadow ray starts; `unless_found` when the plan does not look it up.
 ///
 /// `ray`: leads to the light at t = 1.
+///
+/// # Errors
+/// [`Doubt`] when there are many objects and too little is known of the ray.
 pub fn before_light<'a, R: Real>(
     plan: &Plan<'_>,
     light_idx: usize,
     ray: &Ray<R>,
     found: &'a mut ObjectLists,
     unless_found: Candidates<'a>,
-) -> Candidates<'a> {
+) -> Result<Candidates<'a>, Doubt> {
     let PlainRay { dir, dir_error, .. } = ray.plain();
     found.clear();
     let looked_up = plan.visit_between(light_idx, dir.map(|d| -d), dir_error, |object| {
@@ -56,8 +114,8 @@ pub fn before_light<'a, R: Real>(
         false
     });
     match looked_up {
-        Some(_) => found.as_candidates(),
-        None => unless_found,
+        Some(_) => Ok(found.as_candidates()),
+        None => unless_vague::<R>(plan.looks_between(), unless_found),
     }
 }
 
@@ -85,5 +143,48 @@ pub fn met_before(ray: &PlainRay, scene: &Scene<'_>, i: usize) -> f64 {
         (along + 4.0 * slack + fastest * radius) / (slowest * slowest) * WIDEN
     } else {
         f64::INFINITY
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::Stream;
+    use crate::trace::kernels::{Backend, SingleJob};
+
+    struct Meet<'a>(&'a Boxes, &'a Beam);
+
+    impl SingleJob for Meet<'_> {
+        type Output = ([f32; 16], u32);
+
+        #[inline(always)]
+        fn run<S: SingleLanes>(self) -> Self::Output {
+            SideBySide::<S>::meet(self.0, self.1)
+        }
+    }
+
+    /// Also where boxes are missing, touch the beam or lie behind it, and where the beam runs along an axis.
+    #[test]
+    fn boxes_side_by_side_are_met_as_one_by_one() {
+        let mut stream = Stream::new(7);
+        for _ in 0..20_000 {
+            let n = 1 + stream.below(16);
+            let mut corner = || [0; 3].map(|_| stream.below(9) as f32 - 4.0);
+            let boxes = (0..n).map(|_| {
+                let (a, b) = (corner(), corner());
+                [std::array::from_fn(|k| a[k].min(b[k])), std::array::from_fn(|k| a[k].max(b[k]))]
+            });
+            let boxes = Boxes::new(boxes.collect::<Vec<_>>().into_iter());
+            let [origin, dir] = [0; 2].map(|_| [0; 3].map(|_| stream.below(9) as f64 - 4.0));
+            let ray = SearchRay { origin, dir, origin_error: 0.0, dir_error: 0.0 };
+            let Some(mut beam) = Beam::new(&ray, 4.0) else { continue };
+            if stream.below(2) == 0 {
+                beam.limit(stream.unit() * 4.0);
+            }
+            let expected = OneByOne::meet(&boxes, &beam);
+            for backend in Backend::ALL.into_iter().filter(|backend| backend.is_available()) {
+                assert_eq!(backend.run_single(Meet(&boxes, &beam)), expected, "{}", backend.name());
+            }
+        }
     }
 }

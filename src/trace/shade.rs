@@ -112,7 +112,7 @@ impl<R: Real> Integrator<'_, '_, R> {
         let mut found = mem::take(&mut self.found);
         let listed = self.plan.occluders(at.object, light_idx);
         let among = look_up::before_light(self.plan, light_idx, &ray, &mut found, listed);
-        let answer = self.occluded(&ray, among);
+        let answer = among.and_then(|among| self.occluded(&ray, among));
         self.found = found;
         answer
     }

@@ -11,6 +11,8 @@
 use std::mem;
 use std::ops::Range;
 
+use crate::plan::apex::cube::Expect;
+
 /// Bits of a place within its cell.
 const SHARE_BITS: u32 = 11;
 
@@ -60,6 +62,17 @@ pub struct Query {
     pub high: [f64; 2],
     /// At least the coordinate ahead of the segment's end.
     pub far: f32,
+}
+
+impl Query {
+    /// Returns a query that holds both.
+    pub fn and(&self, other: &Self) -> Self {
+        Self {
+            low: std::array::from_fn(|k| self.low[k].min(other.low[k])),
+            high: std::array::from_fn(|k| self.high[k].max(other.high[k])),
+            far: self.far.max(other.far),
+        }
+    }
 }
 
 /// A side of a grid, cut into cells and those into places.
@@ -200,6 +213,64 @@ impl Grid {
     /// object may come several times.
     pub fn visit(&self, query: &Query, visit: &mut impl FnMut(u32) -> bool) -> bool {
         !self.nodes.is_empty() && self.visit_node(0, query, visit)
+    }
+
+    /// Tells whether a query looks into at most so many cells, of grids within grids too.
+    pub fn is_narrow(&self, query: &Query, max_cells: usize) -> bool {
+        self.nodes.is_empty() || self.count_cells(0, query, max_cells) <= max_cells
+    }
+
+    /// Returns into how many cells of a node a query looks, if they are at most `max_cells`; otherwise a larger number.
+    fn count_cells(&self, node_idx: usize, query: &Query, max_cells: usize) -> usize {
+        let node = &self.nodes[node_idx];
+        let [columns, rows] = [0, 1].map(|k| {
+            let [first, last] = [query.low[k], query.high[k]].map(|slope| cell(node.axes[k].place(slope)));
+            first..=last
+        });
+        if columns.clone().count() * rows.clone().count() > max_cells {
+            return usize::MAX;
+        }
+        let n_columns = node.axes[0].cells();
+        let mut n_cells: usize = 0;
+        for at in rows.flat_map(|row| columns.clone().map(move |column| row * n_columns + column)) {
+            let found = self.cells[node.first_cell + at];
+            n_cells = n_cells.saturating_add(match found.len {
+                Cell::GRID => self.count_cells(found.start as usize, query, max_cells),
+                _ => 1,
+            });
+        }
+        n_cells
+    }
+
+    /// Asks for the first cell that a query looks into.
+    #[inline]
+    pub fn expect_cell<E: Expect>(&self, query: &Query) {
+        if let Some(cell) = self.first_cell(query) {
+            E::expect(&self.cells, cell);
+        }
+    }
+
+    /// Asks for what is in the first cell that a query looks into.
+    #[inline]
+    pub fn expect_records<E: Expect>(&self, query: &Query) {
+        match self.first_cell(query).map(|cell| self.cells[cell]) {
+            Some(Cell { start, len: Cell::GRID }) => E::expect(&self.nodes, start as usize),
+            Some(list) if list.len > 0 => {
+                let Range { start, end } = list.records();
+                E::expect(&self.records, start);
+                E::expect(&self.records, end - 1);
+                E::expect(&self.objects, start);
+            }
+            _ => {}
+        }
+    }
+
+    /// Returns the place of the first cell that a query looks into.
+    #[inline]
+    fn first_cell(&self, query: &Query) -> Option<usize> {
+        let node = self.nodes.first()?;
+        let [column, row] = [0, 1].map(|k| cell(node.axes[k].place(query.low[k])));
+        Some(node.first_cell + row * node.axes[0].cells() + column)
     }
 
     fn visit_node(&self, node_idx: usize, query: &Query, visit: &mut impl FnMut(u32) -> bool) -> bool {

@@ -1,9 +1,10 @@
-//! Eight boxes, and a beam that may meet them.
+//! Sixteen boxes, and a beam that may meet them.
 
+use crate::plan::Expect;
 use crate::plan::tree::{Bounds, FARTHEST, SearchRay};
 
-/// Boxes in a group.
-pub const LANES: usize = 8;
+/// Boxes in a group: as many as a register of binary32 has lanes, and as one level less of groups to wait for.
+pub const LANES: usize = 16;
 
 /// The share of the coordinates that a pad has for binary32, 2⁻¹⁹.
 const ROUNDING: f64 = 1.0 / 524_288.0;
@@ -14,25 +15,39 @@ const UNDERFLOW: f64 = f64::from_bits((1023 - 100) << 52);
 /// The least magnitude of a coordinate of the direction, 2⁻⁴⁰.
 const FLATTEST: f64 = f64::from_bits((1023 - 40) << 52);
 
-/// Eight boxes, coordinate by coordinate. Boxes that are missing have their least coordinates at ∞.
+/// Sixteen boxes, coordinate by coordinate. Boxes that are missing have all coordinates at ∞.
 #[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
 pub struct Boxes {
-    low: [[f32; LANES]; 3],
-    high: [[f32; LANES]; 3],
+    /// The least coordinates.
+    pub low: [[f32; LANES]; 3],
+    /// The largest.
+    pub high: [[f32; LANES]; 3],
 }
 
-const _: () = assert!(size_of::<Boxes>() == 192);
+const _: () = assert!(size_of::<Boxes>() == 384);
+
+/// How a beam is tested against boxes: the answer is that of [`OneByOne`], whatever instructions it takes.
+pub trait MeetBoxes: Expect {
+    /// Returns for each box a lower bound of t in it, and a bit if the beam may meet it up to the t that matters.
+    fn meet(boxes: &Boxes, beam: &Beam) -> ([f32; LANES], u32);
+}
+
+/// One box after the other: the specification.
+#[derive(Clone, Copy, Debug)]
+pub struct OneByOne;
 
 /// A ray that is as wide as it may be off: see the module's documentation.
 #[derive(Clone, Copy, Debug)]
 pub struct Beam {
-    /// The origin, moved by the pad towards and away from where the ray goes.
-    ahead: [f32; 3],
-    behind: [f32; 3],
+    /// The origin, moved by the pad towards where the ray goes.
+    pub ahead: [f32; 3],
+    /// The origin, moved by the pad away from where the ray goes.
+    pub behind: [f32; 3],
     /// The reciprocals of the direction's coordinates.
-    inverse: [f32; 3],
+    pub inverse: [f32; 3],
     /// Meetings beyond do not matter; below the ∞ at which missing boxes lie.
-    t_max: f32,
+    pub t_max: f32,
     /// What t is multiplied by.
     speed: f64,
 }
@@ -61,11 +76,6 @@ impl Beam {
         })
     }
 
-    /// Returns the largest t that matters.
-    pub fn t_max(&self) -> f32 {
-        self.t_max
-    }
-
     /// Learns that meetings beyond `t` do not matter.
     pub fn limit(&mut self, t: f64) {
         self.t_max = self.t_max.min(((t * self.speed) as f32).next_up());
@@ -73,7 +83,7 @@ impl Beam {
 }
 
 impl Boxes {
-    /// Makes a group of at most eight.
+    /// Makes a group of at most sixteen.
     pub fn new(bounds: impl Iterator<Item = Bounds>) -> Self {
         let mut boxes = Self { low: [[f32::INFINITY; LANES]; 3], high: [[f32::INFINITY; LANES]; 3] };
         for (lane, [low, high]) in bounds.enumerate() {
@@ -93,17 +103,18 @@ impl Boxes {
         };
         [std::array::from_fn(|k| least(&self.low[k])), std::array::from_fn(|k| largest(&self.high[k]))]
     }
+}
 
-    /// Returns for each box a lower bound of t in it, and a bit if the beam may meet it up to the t that matters.
+impl MeetBoxes for OneByOne {
     #[inline]
-    pub fn meet(&self, beam: &Beam) -> ([f32; LANES], u32) {
+    fn meet(boxes: &Boxes, beam: &Beam) -> ([f32; LANES], u32) {
         let mut near = [0.0f32; LANES];
         let mut far = [beam.t_max; LANES];
         for k in 0..3 {
             let inverse = beam.inverse[k];
             let (enter, leave) = match inverse >= 0.0 {
-                true => (&self.low[k], &self.high[k]),
-                false => (&self.high[k], &self.low[k]),
+                true => (&boxes.low[k], &boxes.high[k]),
+                false => (&boxes.high[k], &boxes.low[k]),
             };
             for lane in 0..LANES {
                 // A missing box: enters or leaves at ∞ or −∞.
@@ -119,4 +130,9 @@ impl Boxes {
         }
         (near, met)
     }
+}
+
+impl Expect for OneByOne {
+    #[inline]
+    fn expect<T>(_: &[T], _: usize) {}
 }

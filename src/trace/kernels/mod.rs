@@ -20,6 +20,8 @@ mod avx512;
 #[cfg(test)]
 mod tests;
 
+#[cfg(target_arch = "x86_64")]
+use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
 use std::fmt::Debug;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
@@ -120,9 +122,10 @@ pub trait Numbers:
 }
 
 /// Some binary64 numbers.
-pub trait Lanes: Numbers<Element = f64> {}
-
-impl<L: Numbers<Element = f64>> Lanes for L {}
+pub trait Lanes: Numbers<Element = f64> {
+    /// The binary32 numbers of the same backend.
+    type Single: SingleLanes;
+}
 
 /// Some binary32 numbers.
 pub trait SingleLanes: Numbers<Element = f32> {
@@ -148,6 +151,25 @@ pub trait SingleJob {
     /// Computes it.
     fn run<L: SingleLanes>(self) -> Self::Output;
 }
+
+/// Asks for an element to be brought near, into the cache; nothing happens where there is none, or no such instruction.
+#[inline(always)]
+pub fn prefetch<T>(items: &[T], i: usize) {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(item) = items.get(i) {
+        let lines = size_of::<T>().div_ceil(64).min(MAX_LINES);
+        for line in 0..lines {
+            // SAFETY: every x86-64 has the instruction, and the address lies within the element.
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(item).cast::<i8>().add(64 * line)) };
+        }
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = (items, i);
+}
+
+/// Lines of the cache of an element that are asked for: more come by themselves.
+#[cfg(target_arch = "x86_64")]
+const MAX_LINES: usize = 8;
 
 /// What the lanes are made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -2,7 +2,7 @@
 
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-use crate::trace::kernels::{Mask, Numbers};
+use crate::trace::kernels::{Lanes, Mask, Numbers};
 
 /// Twice as many numbers, the lanes of the first below those of the second.
 #[derive(Clone, Copy, Debug)]
@@ -55,6 +55,10 @@ impl<L: Numbers> Neg for Pair<L> {
     fn neg(self) -> Self {
         Self(-self.0, -self.1)
     }
+}
+
+impl<L: Lanes> Lanes for Pair<L> {
+    type Single = L::Single;
 }
 
 impl<L: Numbers> Numbers for Pair<L> {

@@ -29,7 +29,7 @@
 
 use crate::ir::Surface;
 use crate::math::DoubleDouble;
-use crate::plan::{Light, Object, Part, Plan, Scene};
+use crate::plan::{Candidates, Light, Object, Part, Plan, Scene};
 use crate::trace::wide::cluster::Cluster;
 
 /// Half an ulp of 1: the relative error of one rounding is at most this.
@@ -365,18 +365,18 @@ fn group_spheres(scene: &Scene<'_>, faces: &mut [Face]) -> Vec<Vec<u32>> {
 }
 
 impl Bounds {
-    /// Works out the constants of a scene of many spheres, without those of any object.
+    /// Works out the constants of a scene of many objects, without those of any object.
     ///
-    /// Returns `None` when there are cylinders, when the eye is not surely outside of every sphere, and for scenes that are
-    /// left to finer arithmetic altogether.
+    /// Returns `None` when the eye is neither surely outside nor surely inside of a sphere, and for scenes that are left to
+    /// finer arithmetic altogether.
     pub fn of_crowd(plan: &Plan<'_>, dir_error: f64, max_slope: f64) -> Option<Self> {
         let (scene, s) = (&plan.scene, &plan.scene.spheres);
-        let is_outside = |i: usize| {
+        let has_side = |i: usize| {
             let (squared, radius_squared) =
                 (s.x[i] * s.x[i] + s.y[i] * s.y[i] + s.z[i] * s.z[i], s.radius[i] * s.radius[i]);
-            squared - radius_squared > MIN_POWER * (squared + radius_squared)
+            (squared - radius_squared).abs() > MIN_POWER * (squared + radius_squared)
         };
-        if !scene.cylinders.radius.is_empty() || !is_moderate(scene) || !(0..s.radius.len()).all(is_outside) {
+        if !is_moderate(scene) || !(0..s.radius.len()).all(has_side) {
             return None;
         }
         let light = |light: &Light| WideLight {
@@ -392,13 +392,16 @@ impl Bounds {
         })
     }
 
-    /// Works out the constants of some spheres of a crowd, without lights and surfaces.
-    pub fn of_spheres(&self, plan: &Plan<'_>, spheres: &[u32]) -> Option<Self> {
-        let mut faces = Vec::with_capacity(spheres.len());
-        let seen = spheres.iter().map(|&i| eye_sphere(&plan.scene, self.eye, i as usize, &mut faces));
+    /// Works out the constants of some objects of a crowd, without lights and surfaces.
+    pub fn of_some(&self, plan: &Plan<'_>, some: Candidates<'_>) -> Option<Self> {
+        let mut faces = Vec::with_capacity(some.spheres.len() + 3 * some.cylinders.len());
+        let seen = some.spheres.iter().map(|&i| eye_sphere(&plan.scene, self.eye, i as usize, &mut faces));
         let spheres = seen.collect::<Option<Vec<_>>>()?;
         let mirrored = (0..).zip(&faces).map(MirroredSphere::new).collect();
-        Some(Self { eye: self.eye, faces, spheres, mirrored, ..Self::of_nothing(self.eye_roundoff, self.size) })
+        let seen = some.cylinders.iter().map(|&i| eye_cylinder(&plan.scene, self.eye, i as usize, &mut faces));
+        let cylinders = seen.collect::<Option<Vec<_>>>()?;
+        let of_nothing = Self::of_nothing(self.eye_roundoff, self.size);
+        Some(Self { eye: self.eye, faces, spheres, mirrored, cylinders, ..of_nothing })
     }
 
     /// Returns the object that alone has an equation, if that is known.
@@ -626,25 +629,26 @@ fn eye_cylinder(scene: &Scene<'_>, eye: Eye, i: usize, faces: &mut Vec<Face>) ->
 
 /// Works out what every object is to a light.
 fn seen_from(scene: &Scene<'_>, light: &Light) -> WideLight {
-    let (s, c) = (&scene.spheres, &scene.cylinders);
     let position = light.position.to_array();
-    let [x, y, z] = position;
-    let cylinder = |i: usize| {
-        let m = [DoubleDouble::sum(c.x[i], -x), DoubleDouble::ZERO, DoubleDouble::sum(c.z[i], -z)];
-        let (power, squares) = power(m, c.radius[i]);
-        let is_in_line = power < -MIN_POWER * squares && (y > c.y_max[i] || y < c.y_min[i]);
-        let side = match () {
-            () if power > MIN_POWER * squares => Side::Outside,
-            () if is_in_line => Side::InLine,
-            () => Side::Unknown,
-        };
-        occluder(m, power, c.radius[i], [c.y_min[i], c.y_max[i]], side)
-    };
     WideLight {
         position,
-        spheres: (0..s.radius.len()).map(|i| sphere_from(scene, position, i)).collect(),
-        cylinders: (0..c.radius.len()).map(cylinder).collect(),
+        spheres: (0..scene.spheres.radius.len()).map(|i| sphere_from(scene, position, i)).collect(),
+        cylinders: (0..scene.cylinders.radius.len()).map(|i| cylinder_from(scene, position, i)).collect(),
     }
+}
+
+/// Works out what a cylinder is to a light.
+pub(super) fn cylinder_from(scene: &Scene<'_>, [x, y, z]: [f64; 3], i: usize) -> Occluder {
+    let c = &scene.cylinders;
+    let m = [DoubleDouble::sum(c.x[i], -x), DoubleDouble::ZERO, DoubleDouble::sum(c.z[i], -z)];
+    let (power, squares) = power(m, c.radius[i]);
+    let is_in_line = power < -MIN_POWER * squares && (y > c.y_max[i] || y < c.y_min[i]);
+    let side = match () {
+        () if power > MIN_POWER * squares => Side::Outside,
+        () if is_in_line => Side::InLine,
+        () => Side::Unknown,
+    };
+    occluder(m, power, c.radius[i], [c.y_min[i], c.y_max[i]], side)
 }
 
 /// Works out what a sphere is to a light.
@@ -652,7 +656,7 @@ pub(super) fn sphere_from(scene: &Scene<'_>, [x, y, z]: [f64; 3], i: usize) -> O
     let s = &scene.spheres;
     let m = [DoubleDouble::sum(s.x[i], -x), DoubleDouble::sum(s.y[i], -y), DoubleDouble::sum(s.z[i], -z)];
     let (power, squares) = power(m, s.radius[i]);
-    let is_shell = s.x[i] * s.x[i] + s.y[i] * s.y[i] + s.z[i] * s.z[i] < s.radius[i] * s.radius[i];
+    let is_shell = is_around_eye(scene, i);
     let side = match (power > MIN_POWER * squares, power < -MIN_POWER * squares, is_shell) {
         (true, _, false) => Side::Outside,
         (true, _, true) => Side::Closed,
@@ -664,6 +668,12 @@ pub(super) fn sphere_from(scene: &Scene<'_>, [x, y, z]: [f64; 3], i: usize) -> O
         equation: f64::from(scene.sphere_equations[i].number()),
         ..occluder(m, power, s.radius[i], [0.0; 2], side)
     }
+}
+
+/// Tells whether the eye is inside of a sphere, off whose surface it is.
+pub(super) fn is_around_eye(scene: &Scene<'_>, i: usize) -> bool {
+    let s = &scene.spheres;
+    s.x[i] * s.x[i] + s.y[i] * s.y[i] + s.z[i] * s.z[i] < s.radius[i] * s.radius[i]
 }
 
 fn occluder(m: [DoubleDouble; 3], power: f64, radius: f64, [y_min, y_max]: [f64; 2], side: Side) -> Occluder {

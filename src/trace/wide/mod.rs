@@ -33,7 +33,7 @@ mod tests;
 use std::ops::Range;
 
 use crate::math::{Ball64, Real};
-use crate::plan::{Candidates, Plan};
+use crate::plan::{Candidates, ObjectLists, Plan};
 use crate::trace::Counts;
 use crate::trace::kernels::{Backend, Job, Lanes, Mask};
 use crate::trace::pixel::Sampling;
@@ -107,7 +107,7 @@ pub(super) struct Scratch {
     followed: Vec<Packet>,
     /// What is looked up in a crowd: for a packet of hits, and for one of reflected rays.
     around: Around,
-    found: Vec<u32>,
+    found: ObjectLists,
     /// What is noted beside the pixels, if it is asked for.
     pub notes: Option<Notes>,
     counts: Counts,
@@ -169,7 +169,7 @@ impl Wide {
             waiting: Waiting::new(self.channels),
             followed: Vec::new(),
             around: Around::default(),
-            found: Vec::new(),
+            found: ObjectLists::default(),
             notes: takes_notes.then(Notes::new),
             counts: Counts::default(),
         }
@@ -212,7 +212,7 @@ impl Wide {
             // Packets of sixteen would reach beyond narrower tiles.
             return if plan.tiles.width() >= 16 { self.backend.run_twofold(job) } else { self.backend.run(job) };
         }
-        let Some(few) = Few::new(&self.bounds, plan, among.spheres) else {
+        let Some(few) = Few::new(&self.bounds, plan, among) else {
             scratch.slow.fill(u32::MAX);
             return;
         };
@@ -567,7 +567,7 @@ impl TileJob<'_> {
         }
         let mut found = std::mem::take(&mut self.scratch.found);
         let few = crowd::find_along::<L>(self.plan, &packet.rays(), packet.lanes::<L>(), &mut found)
-            .then(|| Few::new(&self.wide.bounds, self.plan, &found))
+            .then(|| Few::new(&self.wide.bounds, self.plan, found.as_candidates()))
             .flatten();
         self.scratch.found = found;
         match few {

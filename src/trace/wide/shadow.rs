@@ -26,15 +26,17 @@ pub(super) struct LightOccluders {
 }
 
 impl LightOccluders {
-    /// Says that what may hide a light are the first `n` of its spheres, and no cylinder.
-    pub fn number(&mut self, light_idx: usize, n: u32) {
+    /// Says that what may hide a light are all of its objects, or that it is hidden.
+    pub fn number(&mut self, light_idx: usize, light: &WideLight, is_hidden: bool) {
         if self.lists.len() <= light_idx {
             self.lists.resize_with(light_idx + 1, Default::default);
             self.hidden.resize(light_idx + 1, false);
         }
-        let [spheres, _] = &mut self.lists[light_idx];
-        spheres.clear();
-        spheres.extend(0..n);
+        self.hidden[light_idx] = is_hidden;
+        for (list, objects) in self.lists[light_idx].iter_mut().zip([&light.spheres, &light.cylinders]) {
+            list.clear();
+            list.extend(0..objects.len() as u32);
+        }
     }
 
     /// Collects what the plan has left, without what shares the face's equation: a ray that leaves a face outward meets
@@ -90,7 +92,7 @@ impl LightOccluders {
 }
 
 /// Tells whether a cap is level with or beyond the top of a cylinder, and the light too; or the bottom.
-fn is_behind_cap(cylinder: &Occluder, light_height: f64, face: &Face) -> bool {
+pub(super) fn is_behind_cap(cylinder: &Occluder, light_height: f64, face: &Face) -> bool {
     let height = face.center[1];
     match face.kind {
         FaceKind::UpperCap => height >= cylinder.y_max && light_height >= cylinder.y_max,

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
-use anyhow::bail;
+use anyhow::{Context, bail};
 use clisc::diag::Diagnostic;
 use clisc::diag::render::{Color, render_human};
 use clisc::diag::words::counted;

@@ -7,7 +7,7 @@ mod single;
 use std::arch::x86_64::*;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-use crate::trace::kernels::{Job, Mask, Numbers, SingleJob};
+use crate::trace::kernels::{Job, Lanes, Mask, Numbers, SingleJob};
 
 /// Tells whether the machine has the instructions.
 pub(super) fn is_available() -> bool {
@@ -211,6 +211,10 @@ impl Numbers for Lanes8 {
         // SAFETY: lanes of this kind exist inside of `run` alone.
         Self(unsafe { [_mm256_blendv_pd(c, a, m), _mm256_blendv_pd(d, b, n)] })
     }
+}
+
+impl Lanes for Lanes8 {
+    type Single = single::Lanes16;
 }
 
 impl Mask for Mask8 {

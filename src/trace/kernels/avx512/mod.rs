@@ -8,7 +8,7 @@ use std::arch::x86_64::*;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 use crate::trace::kernels::pair::Pair;
-use crate::trace::kernels::{Job, Mask, Numbers, SingleJob};
+use crate::trace::kernels::{Job, Lanes, Mask, Numbers, SingleJob};
 
 /// Tells whether the machine has the instructions.
 pub(super) fn is_available() -> bool {
@@ -189,6 +189,10 @@ impl Numbers for Lanes8 {
         // SAFETY: lanes of this kind exist inside of `run` alone.
         Self(unsafe { _mm512_mask_blend_pd(mask.0, no.0, yes.0) })
     }
+}
+
+impl Lanes for Lanes8 {
+    type Single = single::Lanes16;
 }
 
 impl Mask for Mask8 {

@@ -226,3 +226,7 @@ macro_rules! scalar_lanes {
 pub(super) use scalar_lanes;
 
 scalar_lanes!(Lanes8: [f64; 8], Mask8: u8);
+
+impl crate::trace::kernels::Lanes for Lanes8 {
+    type Single = single::Lanes16;
+}
