@@ -23,7 +23,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("exec", &["ir", "plan", "trace", "exact", "image", "diag"]),
     ("format", &["source", "diag", "syntax", "lower", "exec"]),
     ("lint", &["source", "diag", "syntax", "compile", "ir", "plan", "trace", "exec"]),
-    ("ide", &["source", "diag", "syntax", "compile", "exec"]),
+    ("ide", &["source", "diag", "syntax", "lint"]),
     (
         "testing",
         &[

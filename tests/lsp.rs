@@ -16,8 +16,7 @@ const PATIENCE: Duration = Duration::from_secs(120);
 
 const URI: &str = "file:///home/me/my%20scene.cli";
 
-const SCENE: &str =
-    "fov 60\nlight 1 1 1 0 0 5 # π 😀 sun\n\nsurface 0.1 0 0 0.8 .2 .2 0 0 0 1 0\nsphere 0 0 -4 1\nwrite a.png\n";
+const SCENE: &str = "fov 60\nlight 1 1 1 0 0 5 # π 😀 sun\n\nsurface 0.1 0 0 0.8 .2 .2 0 0 0 1 0\nsphere 0 0 -4 1\nwrite \"my scene.png\"\n";
 
 /// An editor with one document, of which it keeps the text as it believes it to be.
 struct Editor {
@@ -400,7 +399,7 @@ fn tokens_are_told_whole_in_part_and_as_they_change() {
     // `fov`, `60`, `light` on the next line, and its six numbers.
     assert_eq!(data[..15], [0, 0, 3, 0, 0, 0, 4, 2, 1, 0, 1, 0, 5, 0, 0].map(Value::from));
     let part = editor.ask_about("semanticTokens/range", json!({ "range": range((5, 0), (5, 3)) }));
-    assert_eq!(part["data"], json!([5, 0, 5, 0, 0, 0, 6, 5, 2, 0]));
+    assert_eq!(part["data"], json!([5, 0, 5, 0, 0, 0, 6, 14, 2, 0]));
     editor.edit(range((0, 4), (0, 6)), "7");
     let delta = editor.ask_about("semanticTokens/full/delta", json!({ "previousResultId": whole["resultId"] }));
     assert_eq!(delta["edits"], json!([{ "start": 5, "deleteCount": 5, "data": [0, 4, 1, 1, 0] }]));
@@ -464,6 +463,27 @@ fn all_safe_fixes_are_one_action() {
 }
 
 #[test]
+fn a_comment_allows_a_finding_as_everywhere() {
+    let mut editor = Editor::open("light 1 1 1 0 0 5\nwrite \"my scene.png\"\n");
+    assert!(editor.codes().contains(&"W0302".to_owned()));
+    let context = json!({ "diagnostics": [] });
+    let actions = editor.ask_about("codeAction", json!({ "range": range((1, 0), (1, 5)), "context": context }));
+    let is_allow = |action: &&Value| action["title"] == "allow it here: `# clisc: allow(no-fov)`";
+    let allow = actions.as_array().expect("a list").iter().find(is_allow).expect("a way to allow it");
+    editor.carry_out(allow["edit"]["documentChanges"][0]["edits"].as_array().expect("a list"));
+    assert_eq!(editor.text.lines().nth(1), Some("# clisc: allow(no-fov)"));
+    assert!(!editor.codes().contains(&"W0302".to_owned()));
+    let page = editor.ask_at("hover", 1, 12);
+    assert!(
+        page["contents"]["value"].as_str().is_some_and(|page| page.contains("no `fov` before a `write`")),
+        "{page}"
+    );
+    let rules = editor.ask_at("completion", 1, 18);
+    assert!(rules.as_array().expect("a list").iter().any(|rule| rule["label"] == "unused-surface"));
+    assert_eq!(rules[0]["textEdit"]["range"], range((1, 15), (1, 18)));
+}
+
+#[test]
 fn what_is_closed_is_forgotten() {
     let mut editor = Editor::open("fov 0\n");
     assert!(editor.codes().contains(&"E0401".to_owned()));
@@ -473,7 +493,7 @@ fn what_is_closed_is_forgotten() {
     let place = json!({ "textDocument": { "uri": URI }, "position": { "line": 0, "character": 0 } });
     assert_eq!(editor.request("textDocument/hover", place)["error"]["code"], -32602);
     editor.note("textDocument/didClose", json!({ "textDocument": { "uri": URI } }));
-    editor.open_text("fov 60\nwrite a.png\n");
+    editor.open_text("fov 60\nwrite \"my scene.png\"\n");
     assert_eq!(editor.diagnostics(), [] as [Value; 0]);
 }
 

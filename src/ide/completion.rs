@@ -2,12 +2,14 @@
 
 use std::collections::HashMap;
 
+use crate::diag::Code;
 use crate::ide::document::kind_of;
 use crate::ide::line::{LineAt, arg_spec};
 use crate::ide::{Document, color_words};
+use crate::lint::all_codes;
 use crate::source::Span;
-use crate::syntax::argument_spans;
 use crate::syntax::spec::{Arguments, COMMANDS, CommandSpec, Group};
+use crate::syntax::{TokenKind, argument_spans, directive};
 
 /// How many commands around the place are looked at for values.
 const N_LOOKED_AT: usize = 2000;
@@ -53,7 +55,8 @@ pub enum CompletionKind {
 pub fn completions(document: &Document, offset: u32) -> Vec<Completion> {
     let line = LineAt::new(document, offset);
     if line.is_in_comment() {
-        return directives(document, &line);
+        let rules = rules(document, &line);
+        return if rules.is_empty() { directives(document, &line) } else { rules };
     }
     let Some(index) = line.arg_index() else {
         let span = line.word().unwrap_or(Span::at(offset));
@@ -156,6 +159,30 @@ fn file_names(document: &Document, span: Span) -> Vec<Completion> {
     }]
 }
 
+/// Offers the rules that a comment can allow, where the place is in its list.
+fn rules(document: &Document, line: &LineAt) -> Vec<Completion> {
+    let Some(comment) = line.tokens.iter().find(|token| token.kind == TokenKind::Comment) else { return Vec::new() };
+    let written = document.source().slice(Span::new(comment.span.start, line.offset));
+    let Some(list) = directive(written).and_then(|text| text.strip_prefix("allow(")) else { return Vec::new() };
+    if list.contains(')') {
+        return Vec::new();
+    }
+    let n_word = list.len() - list.rfind([',', ' ']).map_or(0, |before| before + 1);
+    let n_word = if written.ends_with([' ', '\t']) { 0 } else { n_word };
+    let span = Span::new(line.offset - n_word as u32, line.offset);
+    let rules = all_codes().filter_map(|code| code.name.map(|name| (code, name)));
+    let completion = |(code, name): (&Code, &str)| Completion {
+        label: name.to_owned(),
+        kind: CompletionKind::Directive,
+        detail: code.id.to_owned(),
+        doc: code.title.to_owned(),
+        span,
+        text: name.to_owned(),
+        snippet: None,
+    };
+    rules.map(completion).collect()
+}
+
 /// Offers comments that speak to clisc, on a line that has nothing else.
 fn directives(document: &Document, line: &LineAt) -> Vec<Completion> {
     let comment = Span::new(line.span.start, line.offset);
@@ -164,17 +191,21 @@ fn directives(document: &Document, line: &LineAt) -> Vec<Completion> {
         return Vec::new();
     }
     let span = Span::new(line.offset - written.len() as u32, line.span.end);
-    [("# clisc: off", "leave the text below as it is when formatting"), ("# clisc: on", "format again from here on")]
-        .into_iter()
-        .filter(|(text, _)| text.replace(' ', "").starts_with(&written.replace(' ', "")))
-        .map(|(text, doc)| Completion {
-            label: text.to_owned(),
-            kind: CompletionKind::Directive,
-            detail: String::new(),
-            doc: doc.to_owned(),
-            span,
-            text: text.to_owned(),
-            snippet: None,
-        })
-        .collect()
+    [
+        ("# clisc: off", "leave the text below as it is when formatting"),
+        ("# clisc: on", "format again from here on"),
+        ("# clisc: allow()", "do not report what the rules in the list find in the command below"),
+    ]
+    .into_iter()
+    .filter(|(text, _)| text.replace(' ', "").starts_with(&written.replace(' ', "")))
+    .map(|(text, doc)| Completion {
+        label: text.to_owned(),
+        kind: CompletionKind::Directive,
+        detail: String::new(),
+        doc: doc.to_owned(),
+        span,
+        text: text.to_owned(),
+        snippet: None,
+    })
+    .collect()
 }

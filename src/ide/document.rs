@@ -3,10 +3,9 @@
 use std::cell::OnceCell;
 use std::ops::Range;
 
-use crate::compile::compile;
 use crate::diag::Diagnostic;
-use crate::exec::refused_names;
 use crate::ide::position::{Lines, Position, Unit};
+use crate::lint::{Options, lint};
 use crate::source::{Source, SourceError, Span};
 use crate::syntax::ast::{self, File, Shape};
 use crate::syntax::parse;
@@ -104,10 +103,10 @@ impl Document {
         self.file.get_or_init(|| parse(&self.source).file)
     }
 
-    /// Finds what is wrong with the scene, in the order of the text.
+    /// Does the work of [`diagnostics_of`].
     #[must_use]
-    pub fn diagnostics(&self) -> Vec<Diagnostic> {
-        diagnostics_of(&self.source)
+    pub fn diagnostics(&self, options: &Options) -> Vec<Diagnostic> {
+        diagnostics_of(&self.source, options)
     }
 
     /// Returns the commands that start in `span`.
@@ -117,12 +116,10 @@ impl Document {
     }
 }
 
-/// Finds what is wrong with a scene, in the order of the text: what compiling tells, and names that no run may write to.
+/// Finds what is wrong with a scene, in the order of the text: what the compiler and the rules find and nothing allows.
 #[must_use]
-pub fn diagnostics_of(source: &Source) -> Vec<Diagnostic> {
-    let mut compilation = compile(source);
-    compilation.add(refused_names(&compilation.program));
-    compilation.diagnostics
+pub fn diagnostics_of(source: &Source, options: &Options) -> Vec<Diagnostic> {
+    lint(source, options).diagnostics
 }
 
 /// Returns the kind of a command, as far as it can be told.

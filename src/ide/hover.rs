@@ -5,6 +5,7 @@ use std::fmt::Write;
 use crate::ide::color::color_words;
 use crate::ide::line::{LineAt, arg_spec};
 use crate::ide::{Document, surface_at};
+use crate::lint::find_rule;
 use crate::source::Span;
 use crate::syntax::spec::{ArgSpec, CommandKind, CommandSpec, Range, Unit};
 use crate::syntax::{TokenKind, directive};
@@ -38,11 +39,21 @@ pub fn hover(document: &Document, offset: u32) -> Option<Hover> {
 fn directive_hover(document: &Document, line: &LineAt) -> Option<Hover> {
     let comment = line.tokens.iter().find(|token| token.kind == TokenKind::Comment)?.span;
     let markdown = match directive(document.source().slice(comment))? {
-        "off" => "From here on `clisc fmt` leaves the text as it is, up to `# clisc: on`.",
-        "on" => "From here on `clisc fmt` formats again.",
-        _ => return None,
+        "off" => "From here on `clisc fmt` leaves the text as it is, up to `# clisc: on`.".to_owned(),
+        "on" => "From here on `clisc fmt` formats again.".to_owned(),
+        other => allow_page(other.strip_prefix("allow(")?.strip_suffix(')')?),
     };
-    Some(Hover { span: comment, markdown: markdown.to_owned() })
+    Some(Hover { span: comment, markdown })
+}
+
+/// Says what the rules of a list stand for.
+fn allow_page(names: &str) -> String {
+    let entry = |name: &str| match find_rule(name) {
+        Ok(rule) => format!("\n- `{name}`: {} ({})", rule.title, rule.id),
+        Err(error) => format!("\n- {error}"),
+    };
+    let entries: String = names.split(',').map(|name| entry(name.trim())).collect();
+    format!("Not reported of this command, or of the one below:\n{entries}")
 }
 
 /// Says what a command does, with the groups of its numbers.

@@ -3,7 +3,7 @@
 use clisc::diag::fix::apply;
 use clisc::diag::{Diagnostic, Edit, Fix, Safety};
 use clisc::exec::refuse_name;
-use clisc::format::{Piece, changes, changes_in};
+use clisc::format::{Piece, changes, changes_in, format};
 use clisc::ide;
 use clisc::source::{Source, Span};
 use clisc::syntax::{file_name, parse};
@@ -22,7 +22,13 @@ use crate::lsp::server::failure;
 type Answer<T> = Result<T, ResponseError>;
 
 pub fn formatting(open: &Open, _: DocumentFormattingParams) -> Answer<Option<Vec<TextEdit>>> {
-    Ok(Some(text_edits(open, &changes(open.document.source()))))
+    let source = open.document.source();
+    let changes = changes(source);
+    if changes.len() > ide::MAX_ANSWERS {
+        let text = String::from_utf8_lossy(&format(source)).into_owned();
+        return Ok(Some(vec![Places::new(open).text_edit(Span::new(0, source.text().len() as u32), text)]));
+    }
+    Ok(Some(text_edits(open, &changes)))
 }
 
 pub fn range_formatting(open: &Open, params: DocumentRangeFormattingParams) -> Answer<Option<Vec<TextEdit>>> {
@@ -79,6 +85,7 @@ pub fn code_actions(open: &Open, params: CodeActionParams) -> Answer<Option<Vec<
     if wants(&CodeActionKind::QUICKFIX) {
         for found in open.found().iter().filter(|found| touches(found, range)) {
             actions.extend(found.fixes.iter().map(|fix| quick_fix(open, found, fix)));
+            actions.extend(allow(open, found));
         }
     }
     let fix_all = CodeActionKind::new(FIX_ALL);
@@ -102,6 +109,17 @@ fn quick_fix(open: &Open, found: &Diagnostic, fix: &Fix) -> CodeAction {
         is_preferred: (fix.safety == Safety::Safe).then_some(true),
         ..CodeAction::default()
     }
+}
+
+/// Offers a comment that allows a finding, above its line. An error cannot be allowed.
+fn allow(open: &Open, found: &Diagnostic) -> Option<CodeAction> {
+    let name = found.code.name.filter(|_| !found.code.id.starts_with('E'))?;
+    let comment = format!("# clisc: allow({name})");
+    let edit = Edit::insert_line_before(open.document.source(), found.primary.span.start, &comment);
+    Some(CodeAction {
+        is_preferred: None,
+        ..quick_fix(open, found, &Fix::guess(format!("allow it here: `{comment}`"), vec![edit]))
+    })
 }
 
 /// Offers all safe fixes that do not touch each other, if there are any.

@@ -1,5 +1,7 @@
 //! Places, diagnostics and edits as the protocol has them.
 
+use std::path::PathBuf;
+
 use clisc::diag::{Diagnostic, Severity};
 use clisc::ide::Document;
 use clisc::ide::position::Position;
@@ -112,9 +114,21 @@ pub fn documentation(text: String) -> Option<Documentation> {
 
 /// Returns the name of the file of a document, for messages.
 pub fn file_name(uri: &Uri) -> String {
-    let path = uri.as_str().rsplit('/').next().unwrap_or_default();
-    let mut bytes = Vec::with_capacity(path.len());
-    let mut rest = path.as_bytes();
+    String::from_utf8_lossy(&decoded(uri.as_str().rsplit('/').next().unwrap_or_default())).into_owned()
+}
+
+/// Returns the path of a document that is a file.
+pub fn path(uri: &Uri) -> Option<PathBuf> {
+    let rest = uri.as_str().strip_prefix("file://")?;
+    let path = String::from_utf8(decoded(&rest[rest.find('/')?..])).ok()?;
+    let has_drive = cfg!(windows) && path.as_bytes().get(2) == Some(&b':');
+    Some(PathBuf::from(if has_drive { &path[1..] } else { &path }))
+}
+
+/// Returns the bytes that a part of an address stands for.
+fn decoded(part: &str) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(part.len());
+    let mut rest = part.as_bytes();
     while let Some((&byte, behind)) = rest.split_first() {
         let code = behind.first_chunk::<2>().and_then(|code| std::str::from_utf8(code).ok());
         match code.and_then(|code| u8::from_str_radix(code, 16).ok()) {
@@ -128,5 +142,5 @@ pub fn file_name(uri: &Uri) -> String {
             }
         }
     }
-    String::from_utf8_lossy(&bytes).into_owned()
+    bytes
 }

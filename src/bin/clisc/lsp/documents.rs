@@ -6,11 +6,14 @@ use std::time::{Duration, Instant};
 
 use clisc::diag::Diagnostic;
 use clisc::ide::{Change, Document};
+use clisc::lint::Options;
 use clisc::source::SourceError;
 use lsp_types::{SemanticToken, TextDocumentContentChangeEvent, TextDocumentItem, Uri};
 
+use crate::config::Configs;
 use crate::lsp::capabilities::Client;
-use crate::lsp::convert::{file_name, from_position};
+use crate::lsp::convert::{file_name, from_position, path};
+use crate::print;
 
 /// How long nothing is typed before a scene is checked.
 const PAUSE: Duration = Duration::from_millis(100);
@@ -42,13 +45,22 @@ pub struct Open {
 impl Open {
     /// Returns what is wrong with the document as it stands.
     pub fn found(&self) -> &[Diagnostic] {
-        self.found.get_or_init(|| self.document.diagnostics())
+        self.found.get_or_init(|| self.document.diagnostics(&options_for(&self.uri)))
     }
 
     /// Marks the document as being checked.
     pub fn begin_check(&mut self) {
         (self.due, self.unchecked_since, self.is_being_checked) = (None, None, true);
     }
+}
+
+/// Returns what the rules are asked for: by the `clisc.toml` nearest to a file, read anew each time, since it may change.
+pub fn options_for(uri: &Uri) -> Options {
+    let Some(path) = path(uri) else { return Options::default() };
+    Configs::default().options_for(&path).unwrap_or_else(|error| {
+        print::to_stderr(&format!("error: {error:#}\n"));
+        Options::default()
+    })
 }
 
 /// All open documents, by the text of their addresses.

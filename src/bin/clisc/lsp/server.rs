@@ -21,7 +21,7 @@ use serde_json::Value;
 
 use crate::lsp::capabilities::{Client, offered};
 use crate::lsp::convert::Places;
-use crate::lsp::documents::{Documents, Open};
+use crate::lsp::documents::{Documents, Open, options_for};
 use crate::lsp::transport::{self, Frame};
 use crate::lsp::{actions, handlers, tokens};
 
@@ -281,7 +281,8 @@ impl Server {
             let (uri, generation, sender) = (open.uri.clone(), open.generation, self.sender.clone());
             let source = Source::new(open.document.source().name(), open.document.text());
             thread::spawn(move || {
-                let found = catch_unwind(|| diagnostics_of(&source)).unwrap_or_default();
+                let options = options_for(&uri);
+                let found = catch_unwind(|| diagnostics_of(&source, &options)).unwrap_or_default();
                 // The server may be gone by now.
                 let _ = sender.send(Incoming::Found { uri, generation, found });
             });
