@@ -38,15 +38,6 @@ impl Tracer<'_> {
         }
     }
 
-    /// Renders the whole image in double-double alone: levels are within 10⁻²⁰ of those of exact arithmetic, but behind
-    /// mirrors that magnify errors beyond all measure.
-    #[must_use]
-    pub fn unrounded_finely(&self) -> Unrounded {
-        self.unrounded_pixels(|settler, pixel, among| {
-            unrounded_pixel((&mut settler.fine, &self.fine_camera), pixel, among)
-        })
-    }
-
     /// Traces each pixel by `trace`, which must be able to decide it.
     fn unrounded_pixels(
         &self,

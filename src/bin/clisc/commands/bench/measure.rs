@@ -54,7 +54,7 @@ impl Bench<'_> {
         let mut timed = self.time_all(&[of_modes.clone(), of_samples].concat())?;
         let timed_samples = timed.split_off(modes.len());
 
-        let truth = Tracer::new(plan(self.view, &usual)).unrounded_finely();
+        let truth = self.unrounded_exactly(&usual);
         let modes = modes.iter().zip(&of_modes).zip(timed).map(|((mode, settings), timed)| {
             let errors = Errors::of_unrounded(&self.unrounded(settings, &timed), &truth);
             Measured::new(mode.name(), timed.draft_pixels, Times::of(timed.times), errors)

@@ -15,7 +15,7 @@ use super::plot;
 const VERSION: u32 = 1;
 
 /// What errors of modes are measured against.
-const TRUTH: &str = "double-double";
+const TRUTH: &str = "exact";
 
 /// The whole document of `--json`.
 #[derive(Debug, Serialize)]
