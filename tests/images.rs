@@ -1,8 +1,9 @@
 //! Golden images: every scene below `scenes/` renders to the images in `reference/`.
 //!
 //! `reference/manifest.json` says for each image which scene and options make it, who made it, and how far a render may
-//! differ. A failing image leaves its actual and difference images below the target folder. `CLISC_BLESS=1` adds the
-//! images of new scenes, replaces those that differ, and drops those whose scene is gone.
+//! differ. A failing image leaves its actual and difference images below the target folder. `CLISC_BLESS=1` makes them by
+//! `--precision exact`, which shares nothing with the tracer that the test renders with: it adds the images of new scenes,
+//! replaces those that differ, and drops those whose scene is gone.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -12,7 +13,7 @@ use std::path::{Path, PathBuf};
 use clisc::exec::{CancellationToken, MemorySink, Options, execute};
 use clisc::image::{RgbImage, compare, compare_rows, decode_png, difference_image, encode_png};
 use clisc::ir::{self, Command};
-use clisc::plan::{Part, SampleAt, Settings, Size};
+use clisc::plan::{Part, Precision, SampleAt, Settings, Size};
 use clisc::source::Source;
 use serde::{Deserialize, Serialize};
 
@@ -20,7 +21,7 @@ use serde::{Deserialize, Serialize};
 const GOLDEN_SIZE: &str = "64x48";
 
 /// What this program signs with.
-const PRODUCER: &str = concat!("clisc ", env!("CARGO_PKG_VERSION"));
+const PRODUCER: &str = concat!("clisc ", env!("CARGO_PKG_VERSION"), " --precision exact");
 
 /// The only metric so far: pixels of which some channel differs.
 const METRIC: &str = "differing-pixels";
@@ -195,13 +196,13 @@ fn new_reference(scene: &str, write: &str, is_only: bool) -> Reference {
 }
 
 /// Renders the image of each entry; entries of one scene and the same options share a render.
-fn render_all(references: &[Reference]) -> Vec<RgbImage> {
+fn render_all(references: &[Reference], precision: Precision) -> Vec<RgbImage> {
     let mut renders = BTreeMap::new();
     let mut images = Vec::new();
     for Reference { scene, write, size, options, .. } in references {
-        let images_of_scene = renders
-            .entry((scene, size, options))
-            .or_insert_with(|| render(&root().join("scenes").join(scene), &options.settings(size)));
+        let images_of_scene = renders.entry((scene, size, options)).or_insert_with(|| {
+            render(&root().join("scenes").join(scene), &Settings { precision, ..options.settings(size) })
+        });
         let image = images_of_scene.get(write).unwrap_or_else(|| panic!("{scene} does not write `{write}`"));
         images.push(image.clone());
     }
@@ -239,15 +240,15 @@ fn save(path: &Path, image: &RgbImage) {
     fs::write(path, encode_png(image).expect("an image")).expect("a written image");
 }
 
-/// Brings images and manifest up to date; entries that still hold are left as they are, with their producer.
+/// Brings images and manifest up to date; images that still hold are left as they are.
 fn bless(mut manifest: Manifest) {
     let scenes = scenes();
     manifest.images.retain(|reference| scenes.contains(&reference.scene));
     manifest.images.extend(missing_references(&manifest));
-    let renders = render_all(&manifest.images);
+    let renders = render_all(&manifest.images, Precision::Exact);
     for (reference, actual) in manifest.images.iter_mut().zip(&renders) {
+        PRODUCER.clone_into(&mut reference.producer);
         if check(reference, actual).is_err() {
-            PRODUCER.clone_into(&mut reference.producer);
             reference.crc32 = crc32(actual);
             save(&root().join("reference").join(&reference.image), actual);
         }
@@ -272,7 +273,7 @@ fn every_scene_renders_to_its_golden_images() {
     let missing = missing_references(&manifest);
     let mut faults: Vec<_> =
         missing.iter().map(|r| format!("{}: `{}` has no golden image", r.scene, r.write)).collect();
-    for (reference, actual) in manifest.images.iter().zip(render_all(&manifest.images)) {
+    for (reference, actual) in manifest.images.iter().zip(render_all(&manifest.images, Settings::default().precision)) {
         faults.extend(check(reference, &actual).err().map(|fault| format!("{}: {fault}", reference.image)));
     }
     assert!(faults.is_empty(), "{}\nCLISC_BLESS=1 accepts what is rendered now", faults.join("\n"));
@@ -284,6 +285,7 @@ fn every_golden_image_is_listed_once() {
         return;
     }
     let manifest = read_manifest();
+    assert!(manifest.images.iter().all(|reference| reference.producer == PRODUCER), "not all are made by `exact`");
     let listed: BTreeSet<_> = manifest.images.iter().map(|reference| reference.image.clone()).collect();
     assert_eq!(listed.len(), manifest.images.len(), "an image is listed twice");
     assert_eq!(files_below(&root().join("reference"), ".png"), listed);
