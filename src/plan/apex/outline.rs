@@ -127,8 +127,9 @@ fn box_slopes([low, high]: [f64; 2], ahead: [f64; 2]) -> [f64; 2] {
     [lower(-most(-low)), -lower(-most(high))]
 }
 
-/// Returns a number below a quotient that was rounded.
+/// Returns a number below a quotient that was rounded, perhaps beyond all numbers.
 fn lower(quotient: f64) -> f64 {
+    let quotient = quotient.min(f64::MAX);
     quotient - (quotient.abs() * (4.0 * ROUNDOFF) + f64::MIN_POSITIVE)
 }
 
@@ -202,5 +203,9 @@ mod tests {
         assert!(low == f64::NEG_INFINITY && (-0.25..-0.24).contains(&high));
         let [low, high] = box_slopes([0.0, 1.0], [0.0, 4.0]);
         assert!(low < 0.0 && low > -1e-300 && high == f64::INFINITY);
+        // A cap at the height of the apex, rounded outward: its slopes are beyond all numbers, and not NaN.
+        let [low, high] = box_slopes([0.5, 1.0], [-1.0, f64::from_bits(1)]);
+        assert!((1e308..f64::INFINITY).contains(&low) && high == f64::INFINITY);
+        assert_eq!(box_slopes([-1.0, -0.5], [-1.0, f64::from_bits(1)]), [-high, -low]);
     }
 }
