@@ -62,7 +62,7 @@ pub fn color_words(rgb: [f64; 3]) -> String {
     let tone = match lightness {
         _ if most < 0.2 => "very dark ",
         _ if most < 0.5 => "dark ",
-        light if light > 0.8 => "pale ",
+        light if light > 0.78 => "pale ",
         _ if chroma / most < 0.3 => "greyish ",
         light if light > 0.65 => "light ",
         _ => "",
