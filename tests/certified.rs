@@ -5,6 +5,7 @@
 //! that was claimed for it; and then the packets are made wrong on purpose, to see what this finds and what it does not.
 
 mod families;
+mod support;
 
 use std::fs;
 use std::path::Path;
@@ -12,29 +13,17 @@ use std::path::Path;
 use clisc::exact::{Pixel, Renderer};
 use clisc::exec::{CancellationToken, MemorySink, Options, WriteReport, exact_settings, execute};
 use clisc::image::{RgbImage, decode_png};
-use clisc::ir::{self, Registers, SceneView, Valid};
+use clisc::ir::{SceneView, Valid};
 use clisc::plan::{Pass, Passes, Precision, Settings, Size, plan};
-use clisc::source::Source;
 use clisc::trace::{Fault, Tracer};
 use rayon::prelude::*;
 
 use families::{FAMILIES, FINEST};
+use support::views::{compile, last_view};
 
 fn sized(width: u32, height: u32) -> Settings {
     let size = Size::new(width, height).expect("a size within the limits");
     Settings { size, precision: Precision::Certified, ..Settings::default() }
-}
-
-fn compile(text: &str) -> Valid {
-    let compiled = clisc::compile(&Source::new("scene.cli", text));
-    assert!(!compiled.has_errors(), "{:?}", compiled.diagnostics);
-    ir::validate(compiled.program).expect("a sound program")
-}
-
-fn whole(program: &Valid) -> SceneView<'_> {
-    let mut registers = Registers::default();
-    program.commands.iter().for_each(|command| registers.step(command));
-    SceneView::new(program, registers)
 }
 
 /// Executes a program; returns its reports, and its images by their names.
@@ -57,7 +46,7 @@ fn exact_pixels(view: SceneView<'_>, settings: &Settings) -> Vec<Pixel> {
 fn assert_is_certified(title: &str, text: &str, settings: &Settings) {
     let program = compile(text);
     let (report, image) = run(&program, settings).pop().expect("an image");
-    let exact = exact_pixels(whole(&program), settings);
+    let exact = exact_pixels(last_view(&program), settings);
     let wrong = (0..).zip(image.rgb().as_chunks().0).zip(&exact).filter(|((_, rgb), exact)| **rgb != exact.rgb);
     let wrong: Vec<_> = wrong.map(|((i, rgb), exact)| (i, *rgb, exact)).collect();
     assert!(wrong.is_empty(), "{title}: {} pixels are wrong\n{:?}\n{text}", wrong.len(), &wrong[..wrong.len().min(3)]);

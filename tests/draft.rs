@@ -1,10 +1,13 @@
 //! How wrong a draft is: binary32 against the right pixels, on every backend.
 
-use clisc::ir::{self, Registers, SceneView};
+mod support;
+
+use clisc::ir::SceneView;
 use clisc::plan::{Part, Precision, Settings, Size, plan};
-use clisc::source::Source;
 use clisc::trace::kernels::Backend;
 use clisc::trace::{Counts, Tracer};
+
+use support::views::{compile, for_every_scene, last_view};
 
 /// The side of the images.
 const SIDE: u32 = 300;
@@ -23,28 +26,6 @@ fn render(view: SceneView<'_>, settings: &Settings, backend: Backend) -> (Vec<u8
     let mut rgb = vec![0; width as usize * height as usize * 3];
     let counts = Tracer::with_backend(plan(view, settings), Some(backend)).render_rows(0..height, &mut rgb);
     (rgb, counts)
-}
-
-/// Calls `visit` with the title and the last view of every scene in `scenes/` that has no errors.
-fn for_every_scene(mut visit: impl FnMut(&str, SceneView<'_>)) {
-    for folder in ["first-steps", "commands", "shading", "mirrors", "gallery"] {
-        let folder = format!("{}/scenes/{folder}", env!("CARGO_MANIFEST_DIR"));
-        let mut paths: Vec<_> =
-            std::fs::read_dir(&folder).expect("a folder").map(|entry| entry.expect("an entry").path()).collect();
-        paths.sort();
-        for path in paths {
-            let text = std::fs::read_to_string(&path).expect("a readable scene");
-            with_last_view(&text, |view| visit(&path.display().to_string(), view));
-        }
-    }
-}
-
-fn with_last_view(text: &str, visit: impl FnOnce(SceneView<'_>)) {
-    let source = Source::from_bytes("scene.cli", text.as_bytes().to_vec()).expect("a short text");
-    let program = ir::validate(clisc::compile(&source).program).expect("sound");
-    let mut registers = Registers::default();
-    program.commands.iter().for_each(|command| registers.step(command));
-    visit(SceneView::new(&program, registers));
 }
 
 /// How a draft differs from the right image.
@@ -136,13 +117,13 @@ fn what_binary32_cannot_start_from_is_not_drafted() {
         (&far, settings(Precision::F32), false),
     ];
     for (text, settings, is_drafted) in cases {
-        with_last_view(text, |view| {
-            let (image, counts) = render(view, &settings, Backend::best());
-            assert_eq!(counts.draft_pixels, if is_drafted { u64::from(SIDE * SIDE) } else { 0 }, "{text}{settings:?}");
-            if !is_drafted {
-                let right = render(view, &Settings { precision: Precision::F64, ..settings }, Backend::best()).0;
-                assert!(image == right, "{text}");
-            }
-        });
+        let program = compile(text);
+        let view = last_view(&program);
+        let (image, counts) = render(view, &settings, Backend::best());
+        assert_eq!(counts.draft_pixels, if is_drafted { u64::from(SIDE * SIDE) } else { 0 }, "{text}{settings:?}");
+        if !is_drafted {
+            let right = render(view, &Settings { precision: Precision::F64, ..settings }, Backend::best()).0;
+            assert!(image == right, "{text}");
+        }
     }
 }

@@ -3,29 +3,19 @@
 //! Its numbers are held against far more bits in `src/exact/ball/tests.rs`; that its pixels do not depend on the precision
 //! it starts with, nor on its filter, and that it paints the original images, stands in `tests/exactness.rs`.
 
+mod support;
+
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use clisc::exact::{LADDER, Part, Record, Renderer, SampleAt, Settings, Tie};
-use clisc::ir::{self, Registers, SceneView, Valid};
-use clisc::source::Source;
 
-fn compile(text: &str) -> Valid {
-    let compiled = clisc::compile(&Source::new("scene.cli", text));
-    assert!(!compiled.has_errors(), "{:?}", compiled.diagnostics);
-    ir::validate(compiled.program).expect("a sound program")
-}
-
-fn whole(program: &Valid) -> SceneView<'_> {
-    let mut registers = Registers::default();
-    program.commands.iter().for_each(|command| registers.step(command));
-    SceneView::new(program, registers)
-}
+use support::views::{compile, last_view};
 
 /// With a field of view of 90 degrees and 4×4 pixels the eye ray of a pixel is ((i − 2)/2, (2 − j)/2, −1), all exact.
 fn pixel_of(text: &str, column: u32, row: u32) -> [u8; 3] {
     let program = compile(&format!("fov 90\n{text}\nwrite i.png\n"));
     let settings = Settings { width: 4, height: 4, ..Settings::default() };
-    let pixel = Renderer::new(whole(&program), &settings).pixel(column, row);
+    let pixel = Renderer::new(last_view(&program), &settings).pixel(column, row);
     assert_eq!(pixel.open_ties.total(), 0, "{text}: {:?}", pixel.open_ties);
     pixel.rgb
 }
@@ -108,7 +98,7 @@ fn part_a_knows_neither_cylinders_nor_shadows() {
                 sphere 0 3 -1 .5\nwrite i.png\n";
     let program = compile(text);
     let settings = Settings { width: 4, height: 4, part: Part::A, ..Settings::default() };
-    assert_eq!(Renderer::new(whole(&program), &settings).pixel(2, 2).rgb, [153, 76, 0]);
+    assert_eq!(Renderer::new(last_view(&program), &settings).pixel(2, 2).rgb, [153, 76, 0]);
 }
 
 #[test]
@@ -119,7 +109,7 @@ fn samples_are_averaged_about_the_sample_point() {
     let program = compile(text);
     let at = |sample_at| {
         let settings = Settings { width: 4, height: 4, samples: 2, sample_at, ..Settings::default() };
-        Renderer::new(whole(&program), &settings).pixel(2, 2).rgb
+        Renderer::new(last_view(&program), &settings).pixel(2, 2).rgb
     };
     assert_eq!(at(SampleAt::Corner), [127; 3]);
     assert_eq!(at(SampleAt::Centre), [0; 3]);
@@ -131,7 +121,7 @@ const TOUCHED: &str = "fov 60\nlight 1 1 1 0 0 5\nsurface 0 .2 0 .4 .1 .1 0 0 0 
 #[test]
 fn ties_are_listed_with_their_places() {
     let program = compile(TOUCHED);
-    let renderer = Renderer::new(whole(&program), &Settings::default());
+    let renderer = Renderer::new(last_view(&program), &Settings::default());
     let mut rgb = vec![0; 300 * 3];
     let record = renderer.render_rows(84..85, &mut rgb, &|| false);
     let places: Vec<_> = record.ties.iter().map(|place| (place.column, place.row)).collect();
@@ -149,7 +139,7 @@ fn a_tie_without_algebra_takes_every_bit_and_stays_open() {
     // Two balls that are each other's mirror image meet every ray of the middle column at the same t: behind a mirror.
     let program = compile(&format!("{MIRROR}{TWINS_BEHIND}write i.png\n"));
     let settings = Settings { width: 40, height: 30, ..Settings::default() };
-    let renderer = Renderer::new(whole(&program), &settings);
+    let renderer = Renderer::new(last_view(&program), &settings);
     let (tied, beside) = (renderer.pixel(20, 15), renderer.pixel(21, 15));
     assert!(tied.open_ties.of(Tie::Order) > 0 && tied.bits == LADDER[LADDER.len() - 1], "{tied:?}");
     assert_eq!((beside.open_ties.total(), beside.bits), (0, LADDER[0]));
@@ -163,7 +153,7 @@ fn twins_before_the_eye_are_proved_to_be_met_at_once() {
     let twins = TWINS_BEHIND.replace(" 4 1", " -4 1");
     let program = compile(&format!("fov 50\nlight 1 1 1 0 5 5\n{twins}write i.png\n"));
     let settings = Settings { width: 40, height: 30, ..Settings::default() };
-    let pixel = Renderer::new(whole(&program), &settings).pixel(20, 14);
+    let pixel = Renderer::new(last_view(&program), &settings).pixel(20, 14);
     assert_eq!((pixel.proved_ties.of(Tie::Order), pixel.open_ties.total(), pixel.bits), (1, 0, LADDER[0]), "{pixel:?}");
 }
 
@@ -182,7 +172,7 @@ fn rays_that_touch_are_proved_to_for_60_90_and_120_degrees() {
     ] {
         let program = compile(&format!("fov {fov}\nsurface 1 1 1 0 0 0 0 0 0 1 0\n{body}\nwrite i.png\n"));
         let settings = Settings { width, height, ..Settings::default() };
-        let pixel = Renderer::new(whole(&program), &settings).pixel(column, row);
+        let pixel = Renderer::new(last_view(&program), &settings).pixel(column, row);
         assert_eq!((pixel.rgb, pixel.bits), ([255; 3], LADDER[0]), "{body}: {pixel:?}");
         assert_eq!((pixel.proved_ties.of(Tie::Tangent), pixel.open_ties.total()), (1, 0), "{body}: {pixel:?}");
     }
@@ -192,7 +182,7 @@ fn rays_that_touch_are_proved_to_for_60_90_and_120_degrees() {
 fn rows_do_not_depend_on_how_they_are_cut() {
     let program = compile(TOUCHED);
     let settings = Settings { width: 37, height: 20, ..Settings::default() };
-    let renderer = Renderer::new(whole(&program), &settings);
+    let renderer = Renderer::new(last_view(&program), &settings);
     let (image, record) = renderer.image();
     let (mut cut, mut merged) = (Vec::new(), Record::default());
     for rows in [0..1, 1..13, 13..20] {
@@ -206,7 +196,7 @@ fn rows_do_not_depend_on_how_they_are_cut() {
 #[test]
 fn a_cancelled_render_ends_soon() {
     let program = compile(TOUCHED);
-    let renderer = Renderer::new(whole(&program), &Settings::default());
+    let renderer = Renderer::new(last_view(&program), &Settings::default());
     let asked = AtomicU32::new(0);
     let is_cancelled = || asked.fetch_add(1, Ordering::Relaxed) >= 100;
     let record = renderer.render_rows(0..300, &mut vec![0; 300 * 300 * 3], &is_cancelled);

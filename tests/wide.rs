@@ -1,15 +1,16 @@
 //! The packets give the pixels that are settled one by one, on every backend.
 
 mod families;
+mod support;
 
-use clisc::ir::{self, Registers, SceneView};
+use clisc::ir::SceneView;
 use clisc::plan::{Part, SampleAt, Settings, Size, plan};
-use clisc::source::Source;
 use clisc::testing::Stream;
 use clisc::trace::kernels::Backend;
 use clisc::trace::{Counts, Tracer};
 
 use families::FAMILIES;
+use support::views::{compile, for_every_scene, last_view};
 
 /// Seeds of each family.
 const N_SEEDS: u64 = 2;
@@ -95,25 +96,6 @@ fn packets_give_the_settled_pixels_of_every_setting() {
     assert_none(&failures);
 }
 
-/// Calls `visit` with the title and the last view of every scene in `scenes/` that has no errors.
-fn for_every_scene(mut visit: impl FnMut(&str, SceneView<'_>)) {
-    for folder in ["first-steps", "commands", "shading", "mirrors", "gallery"] {
-        let folder = format!("{}/scenes/{folder}", env!("CARGO_MANIFEST_DIR"));
-        let mut paths: Vec<_> =
-            std::fs::read_dir(&folder).expect("a folder").map(|entry| entry.expect("an entry").path()).collect();
-        paths.sort();
-        for path in paths {
-            let text = std::fs::read(&path).expect("a readable scene");
-            let program =
-                ir::validate(clisc::compile(&Source::from_bytes("scene.cli", text).expect("a short text")).program)
-                    .expect("sound");
-            let mut registers = Registers::default();
-            program.commands.iter().for_each(|command| registers.step(command));
-            visit(&path.display().to_string(), SceneView::new(&program, registers));
-        }
-    }
-}
-
 #[test]
 fn packets_give_the_settled_pixels_of_every_scene() {
     let mut failures = Vec::new();
@@ -155,12 +137,7 @@ fn packets_give_the_settled_pixels_of_clusters() {
     let mut failures = Vec::new();
     for _ in 0..24 {
         let text = cluster(&mut stream);
-        let program =
-            clisc::compile(&Source::from_bytes("scene.cli", text.clone().into_bytes()).expect("text")).program;
-        let program = ir::validate(program).expect("sound");
-        let mut registers = Registers::default();
-        program.commands.iter().for_each(|command| registers.step(command));
-        let found = differences("a cluster", SceneView::new(&program, registers), &sized(80, 60));
+        let found = differences("a cluster", last_view(&compile(&text)), &sized(80, 60));
         if !found.is_empty() {
             failures.extend(found);
             failures.push(text);

@@ -4,6 +4,7 @@
 pub mod carets;
 pub mod ebnf;
 pub mod lines;
+pub mod views;
 
 use std::fs;
 use std::path::{Path, PathBuf};
