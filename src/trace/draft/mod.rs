@@ -18,11 +18,12 @@ use crate::plan::{Candidates, Object, Plan, Precision};
 use crate::trace::Counts;
 use crate::trace::draft::meet::{EyeRays, Lines, Nearest, Reflected, RowSphere};
 use crate::trace::draft::mirror::{MAX_LANES, Mirror, Queue, Rays};
-use crate::trace::draft::scene::{DraftScene, Face, FaceKind};
+use crate::trace::draft::scene::{DraftScene, Face};
 use crate::trace::draft::shade::Points;
 use crate::trace::draft::shadow::FaceLights;
 use crate::trace::kernels::{Backend, Mask, SingleJob, SingleLanes};
 use crate::trace::pixel::Sampling;
+use crate::trace::wide::FaceKind;
 use crate::trace::wide::Rect;
 
 /// The most columns and rows of a tile.

@@ -5,6 +5,7 @@ use std::sync::OnceLock;
 use crate::ir;
 use crate::plan::{Object, Part, Plan, Scene};
 use crate::trace::draft::shadow::FaceLights;
+use crate::trace::wide::FaceKind;
 
 /// How far the cheap test for a silhouette may be off, as a share of |c|² + r²: some ten roundings of binary32.
 const SILHOUETTE_SLACK: f64 = 1.0 / 1_048_576.0;
@@ -34,15 +35,6 @@ pub(super) struct Face {
     pub surface: usize,
     /// What lights it, worked out when it is first met.
     pub lights: OnceLock<FaceLights>,
-}
-
-/// What a face is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum FaceKind {
-    Sphere,
-    Wall,
-    LowerCap,
-    UpperCap,
 }
 
 /// A sphere as rays see it.

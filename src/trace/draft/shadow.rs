@@ -7,8 +7,9 @@
 
 use crate::plan::{Object, Part, Plan, Scene};
 use crate::trace::draft::meet::{dot, minus};
-use crate::trace::draft::scene::{Face, FaceKind, single};
+use crate::trace::draft::scene::{Face, single};
 use crate::trace::kernels::{Mask, SingleLanes};
+use crate::trace::wide::FaceKind;
 
 /// How far the cheap form of D may be off, as a share of (|m|² + r²)·a: some ten roundings of binary32.
 const SHADOW_SLACK: f64 = 1.0 / 1_048_576.0;

@@ -97,7 +97,7 @@ pub(super) struct MirroredSphere {
 
 /// What a face is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum FaceKind {
+pub(in crate::trace) enum FaceKind {
     Sphere,
     Wall,
     LowerCap,

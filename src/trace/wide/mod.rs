@@ -32,13 +32,15 @@ mod tests;
 
 use std::ops::Range;
 
+pub(super) use self::bounds::FaceKind;
+
 use crate::math::{Ball64, Real};
 use crate::plan::{Candidates, ObjectLists, Plan};
 use crate::trace::Counts;
 use crate::trace::kernels::{Backend, Job, Lanes, Mask};
 use crate::trace::pixel::Sampling;
 
-use self::bounds::{Bounds, Face, FaceKind};
+use self::bounds::{Bounds, Face};
 use self::crowd::{Around, Few};
 use self::eye::{EyeRays, Nearest, RowSphere};
 use self::fault::Fault;
