@@ -103,7 +103,7 @@ fn searching_changes_no_pixel() {
         Crowd { n_objects: 300, sizes: [0.02, 0.2], cluster: 1.0, depths: [-9.0, -2.0], cylinders: 4, around: 0.0 };
     let crowds = [
         usual,
-        Crowd { n_objects: 90, sizes: [0.2, 1.0], ..usual },
+        Crowd { n_objects: 130, sizes: [0.2, 1.0], ..usual },
         Crowd { n_objects: 3000, sizes: [0.005, 0.05], cylinders: 7, ..usual },
         Crowd { n_objects: 1000, sizes: [1e-4, 0.1], cluster: 0.05, ..usual },
         Crowd { n_objects: 1000, sizes: [1e-6, 0.01], cluster: 0.001, cylinders: 5000, ..usual },
@@ -111,7 +111,7 @@ fn searching_changes_no_pixel() {
         Crowd { n_objects: 700, sizes: [0.1, 0.4], cylinders: 5000, depths: [-9.0, -1.0], ..usual },
         Crowd { n_objects: 200, sizes: [0.01, 20.0], ..usual },
         Crowd { n_objects: 400, sizes: [0.01, 0.5], depths: [-3.0, 3.0], ..usual },
-        Crowd { n_objects: 100, sizes: [2.0, 30.0], depths: [-3.0, 3.0], cylinders: 2, ..usual },
+        Crowd { n_objects: 140, sizes: [2.0, 30.0], depths: [-3.0, 3.0], cylinders: 2, ..usual },
         Crowd { n_objects: 900, sizes: [0.02, 0.3], cylinders: 2, ..usual },
         Crowd { n_objects: 700, sizes: [0.02, 0.3], cylinders: 3, around: 30.0, ..usual },
         Crowd { n_objects: 700, sizes: [0.02, 0.3], cylinders: 5, around: 7.0, ..usual },
@@ -124,5 +124,20 @@ fn searching_changes_no_pixel() {
         assert_eq!(search, Search::Structures, "{crowd:?}");
         let n_different = with.chunks(3).zip(without.chunks(3)).filter(|(a, b)| a != b).count();
         assert_eq!(n_different, 0, "{crowd:?}: of {} pixels", WIDTH * HEIGHT);
+    }
+}
+
+/// The same scenes with one object more or less: before and behind the steps at which pairs are no longer looked at, and from
+/// which on objects are looked up.
+#[test]
+fn steps_from_few_to_many_change_no_pixel() {
+    let usual =
+        Crowd { n_objects: 0, sizes: [0.1, 0.5], cluster: 1.0, depths: [-9.0, -2.0], cylinders: 4, around: 0.0 };
+    for n_objects in [52, 53, 56, 57, 58, 59, 126, 127, 128, 129] {
+        let sketch = sketch(&Crowd { n_objects, ..usual }, &mut Stream::new(7));
+        let (search, with) = render(&sketch, Passes::all());
+        let (_, without) = render(&sketch, Passes::none());
+        assert_eq!(search == Search::Structures, n_objects >= 128, "{n_objects}");
+        assert!(with == without, "{n_objects} objects");
     }
 }

@@ -11,13 +11,22 @@ use crate::plan::shadows::find_occluders;
 use crate::plan::{Object, Part, Pass, Scene, Settings};
 
 /// Pairs of objects and lights that are looked at however small the image is: they take some tenths of a millisecond.
-const MIN_PAIRS: u64 = 4096;
+const MIN_PAIRS: u64 = 1 << 14;
 
 /// Pairs that are looked at however large the image is.
-const MAX_PAIRS: u64 = 1 << 18;
+const MAX_PAIRS: u64 = 1 << 20;
 
-/// Pixels for each pair beyond [`MIN_PAIRS`], so that the passes take a small part of the time of the image.
-const PIXELS_PER_PAIR: u64 = 64;
+/// Pairs for each pixel beyond [`MIN_PAIRS`], so that the passes take a small part of the time of the image.
+const PAIRS_PER_PIXEL: u64 = 2;
+
+/// Pixels for each pair for which a plane is looked for, which takes fifty times as long.
+const PIXELS_PER_PLANE: u64 = 64;
+
+/// Planes that are looked for however small the image is, and however large.
+const N_PLANES: [u64; 2] = [1 << 12, 1 << 18];
+
+/// The most objects, on the average, that a short list of what may lie between an object and a light has.
+const MAX_SHORT: usize = 64;
 
 /// What is known of few objects, index for index with the scene, spheres first.
 #[derive(Debug)]
@@ -75,9 +84,13 @@ pub(super) fn analyse_pairs(
 
 /// Returns how many pairs are worth looking at for an image.
 fn max_pairs(settings: &Settings) -> u64 {
+    n_samples(settings).saturating_mul(PAIRS_PER_PIXEL).clamp(MIN_PAIRS, MAX_PAIRS)
+}
+
+/// Returns how many eye rays an image has.
+fn n_samples(settings: &Settings) -> u64 {
     let n_pixels = u64::from(settings.size.width()) * u64::from(settings.size.height());
-    let n_samples = n_pixels * u64::from(settings.samples).pow(2);
-    (n_samples / PIXELS_PER_PAIR).clamp(MIN_PAIRS, MAX_PAIRS)
+    n_pixels * u64::from(settings.samples).pow(2)
 }
 
 impl Analysis {
@@ -96,7 +109,8 @@ impl Analysis {
             known.reflected = Some(reflected_lists(&known.solids, &known.roles, known.n_spheres()));
         }
         if passes.contains(Pass::Shadows) {
-            let shadows = find_occluders(scene, &known.solids, &known.roles, part);
+            let max_planes = (n_samples(settings) / PIXELS_PER_PLANE).clamp(N_PLANES[0], N_PLANES[1]);
+            let shadows = find_occluders(scene, &known.solids, &known.roles, part, max_planes);
             known.lights = Some(shadows.lights);
             known.occluders = Some(shadows.occluders);
         }
@@ -150,6 +164,11 @@ impl Analysis {
         retain_at(&mut self.names, keep);
         retain_at(&mut self.solids, keep);
         self.roles.retain(keep);
+    }
+
+    /// Tells whether little is left, on the average, that may lie between an object and a light.
+    pub fn lists_are_short(&self) -> bool {
+        self.occluders.as_ref().is_some_and(|lists| lists.n_entries() <= MAX_SHORT * lists.len())
     }
 
     /// Returns the most reflections that an eye ray can have; `None` is unbounded.

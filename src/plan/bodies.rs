@@ -20,6 +20,9 @@ use crate::math::{Ball64, Real, Sign, Vector, compare_sum_zero};
 /// Steps towards a parting plane. Most pairs are parted by the first; what is not after this many is taken to meet.
 const MAX_STEPS: usize = 12;
 
+/// Squares above this, 2⁻⁸⁰⁰, and sums of them have lost nothing to underflow that their roundings would notice.
+pub(super) const SMALLEST_SQUARE: f64 = f64::from_bits((1023 - 800) << 52);
+
 /// A convex set of points that is known by how far it reaches in each direction.
 pub(super) trait Body {
     /// Returns a point of the body, or one near it, that lies about as far against `along` as any.
@@ -83,6 +86,28 @@ impl Solid {
                 DVec3::new(x + across.x, point.y.clamp(y_min, y_max), z + across.z)
             }
         }
+    }
+
+    /// Returns the centre and the radius of a sphere around the solid.
+    ///
+    /// The radius is rounded up by far more than the middle of a cylinder's heights is off and than its own roundings lose.
+    pub fn sphere_around(&self) -> (DVec3, f64) {
+        match *self {
+            Self::Sphere { center, radius } => (center, radius),
+            Self::Cylinder { x, z, radius, y_min, y_max } => {
+                let reach = radius.hypot(0.5 * y_max - 0.5 * y_min) * (1.0 + 1e-9);
+                let center = DVec3::new(x, 0.5 * y_min + 0.5 * y_max, z);
+                (center, reach + 1e-15 * (y_min.abs() + y_max.abs()))
+            }
+        }
+    }
+
+    /// Proves cheaply of most solids that have no point in common that they have none: the spheres around them have none.
+    pub fn is_clear_of(&self, other: &Self) -> bool {
+        let ((a, r), (b, s)) = (self.sphere_around(), other.sphere_around());
+        let distance_squared = (a - b).length_squared();
+        // Few roundings, each relative, unless the squares underflow.
+        distance_squared > (r + s) * (r + s) * (1.0 + 1e-12) && distance_squared > SMALLEST_SQUARE
     }
 
     /// Returns numbers that the lowest and the highest y are the exact sums of.

@@ -11,6 +11,7 @@ mod apex;
 mod bodies;
 mod bounces;
 mod candidates;
+mod cone;
 mod curve;
 mod dump;
 mod frustum;
@@ -90,7 +91,8 @@ pub fn plan<'p>(view: SceneView<'p>, settings: &Settings) -> Plan<'p> {
     let mut scene = Scene::new(view, settings.part);
     let mut report = Report::new(&view, &scene);
     let known = analyse(&mut scene, view.fov_deg(), settings, &mut report);
-    let search = Search::new(&scene);
+    let lists_are_short = known.as_ref().is_some_and(Analysis::lists_are_short);
+    let search = Search::new(&scene, lists_are_short);
     if search == Search::Structures && known.is_none() {
         scene.sort_by_place();
     }

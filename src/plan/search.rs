@@ -7,23 +7,21 @@ use crate::plan::{Object, Part, Pass, Scene, Settings};
 /// How rays other than those from the eye find what they may meet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Search {
-    /// There are few objects: a packet of rays goes through a list of candidates.
+    /// There are few objects, or few candidates for each: a packet of rays goes through a list of candidates.
     Lists,
     /// There are many: a shadow ray looks into the grids around its light, a reflected ray walks a tree.
     Structures,
 }
 
-/// From so many objects on, looking up pays.
-const MANY: usize = 64;
+/// From so many objects on, looking up pays if nothing is known of pairs of them.
+const MANY: usize = 128;
 
 impl Search {
     /// Chooses for a scene.
-    pub(super) fn new(scene: &Scene<'_>) -> Self {
-        if scene.sphere_primitives.len() + scene.cylinder_primitives.len() < MANY {
-            Self::Lists
-        } else {
-            Self::Structures
-        }
+    ///
+    /// `lists_are_short`: whether pairs were looked at, and little was left that may lie between objects and lights.
+    pub(super) fn new(scene: &Scene<'_>, lists_are_short: bool) -> Self {
+        if lists_are_short || scene.n_objects() < MANY { Self::Lists } else { Self::Structures }
     }
 }
 

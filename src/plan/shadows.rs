@@ -3,7 +3,8 @@
 //! # Why it is safe
 //! A shadow ray leads from a point p of the receiver to the light; it is cast only when p faces the light, n·L > 0 with n
 //! on the side from which p was met. It lies in the convex hull of the points that can be p, and the light. What is
-//! parted from that hull by a plane (`bodies`) is not on its way.
+//! parted from that hull by a plane (`bodies`) is not on its way, nor what the light sees elsewhere (`cone`), which is
+//! tried first: most pairs are far apart.
 //!
 //! Of a sealed receiver (see `objects`), which is met from outside alone, only some points face the light:
 //! - of a sphere with the light outside those beyond the disc where the light's tangents touch; with the light inside
@@ -19,10 +20,14 @@ use glam::DVec3;
 use crate::math::Sign;
 use crate::plan::bodies::{Body, FacingDisc, Region, Solid, parts};
 use crate::plan::candidates::ListTable;
+use crate::plan::cone::Cone;
 use crate::plan::objects::Roles;
 use crate::plan::solid::Faces;
 use crate::plan::terms::answers;
 use crate::plan::{Part, Scene};
+
+/// For so many objects between an object and a light a plane is looked for, however many objects there are.
+const MIN_PLANES: usize = 4;
 
 /// What may lie between objects and lights.
 #[derive(Debug)]
@@ -41,8 +46,23 @@ enum Facing {
 }
 
 /// Finds for each object that is met, and each light, what may lie between them; by the rules of part A nothing does.
-pub(super) fn find_occluders(scene: &Scene<'_>, solids: &[Solid], roles: &Roles, part: Part) -> Shadows {
+///
+/// `max_planes`: for about how many pairs a plane is looked for.
+pub(super) fn find_occluders(
+    scene: &Scene<'_>,
+    solids: &[Solid],
+    roles: &Roles,
+    part: Part,
+    max_planes: u64,
+) -> Shadows {
+    let n_lists = (solids.len() * scene.lights.len()).max(1) as u64;
+    let max_planes = (max_planes / n_lists) as usize + MIN_PLANES;
     let n_spheres = scene.sphere_primitives.len();
+    let cones: Vec<Vec<_>> = scene
+        .lights
+        .iter()
+        .map(|light| solids.iter().map(|solid| Cone::new(solid, light.position)).collect())
+        .collect();
     let mut shadows = Shadows { lights: Vec::with_capacity(solids.len()), occluders: ListTable::new(n_spheres) };
     for (receiver, primitive) in scene.primitives().enumerate() {
         let mut lights = Vec::new();
@@ -52,9 +72,19 @@ pub(super) fn find_occluders(scene: &Scene<'_>, solids: &[Solid], roles: &Roles,
             let mut between = match &facing {
                 Facing::Nothing => Vec::new(),
                 _ if part == Part::A => Vec::new(),
-                Facing::Disc(disc) => between(disc, light.position, solids, roles, receiver),
-                Facing::Solid(solid) => between(solid, light.position, solids, roles, receiver),
+                _ => beside(&cones[light_idx as usize], receiver)
+                    .filter(|&i| i != receiver || !roles.sealed[i])
+                    .collect(),
             };
+            match &facing {
+                Facing::Nothing => {}
+                Facing::Disc(disc) => {
+                    leave_out_parted(&mut between, disc, light.position, solids, receiver, max_planes)
+                }
+                Facing::Solid(solid) => {
+                    leave_out_parted(&mut between, solid, light.position, solids, receiver, max_planes)
+                }
+            }
             sort_by_size(&mut between, light.position, solids);
             shadows.occluders.push(between.into_iter());
             if !matches!(facing, Facing::Nothing) {
@@ -89,12 +119,26 @@ fn facing(solids: &[Solid], roles: &Roles, receiver: usize, light: DVec3) -> Fac
     }
 }
 
-fn between(start: &impl Body, light: DVec3, solids: &[Solid], roles: &Roles, receiver: usize) -> Vec<usize> {
-    let may_block = |&i: &usize| {
-        let is_itself = i == receiver;
-        if is_itself { !roles.sealed[i] } else { !parts(start, light, &solids[i]) }
-    };
-    (0..solids.len()).filter(may_block).collect()
+/// Returns what the light may see before or beside a receiver, and the receiver.
+fn beside(cones: &[Cone], receiver: usize) -> impl Iterator<Item = usize> {
+    let own = cones[receiver];
+    (0..cones.len()).filter(move |&i| !own.parts(&cones[i]))
+}
+
+/// Leaves out what planes part, the first so many looked at.
+fn leave_out_parted(
+    between: &mut Vec<usize>,
+    start: &impl Body,
+    light: DVec3,
+    solids: &[Solid],
+    receiver: usize,
+    max_planes: usize,
+) {
+    let mut n_planes = 0;
+    between.retain(|&i| {
+        n_planes += 1;
+        i == receiver || n_planes > max_planes || !parts(start, light, &solids[i])
+    });
 }
 
 /// Puts first what looks largest from the light, and so is likely to block.

@@ -74,6 +74,9 @@ impl Solid {
     /// cylinder when both its rims do at their farthest points. In a cylinder all lies that lies within its infinite wall
     /// and between its caps.
     pub fn contains(&self, inner: &Self) -> bool {
+        if self.is_clear_of(inner) {
+            return false;
+        }
         let is_between = || {
             let [[bottom, top], [inner_bottom, inner_top]] = [self.heights(), inner.heights()];
             let is_less = |[a, b]: [f64; 2], [c, d]: [f64; 2]| compare_sum_zero([c, d, -a, -b]).is_gt();
@@ -115,7 +118,11 @@ impl Solid {
 
     /// Proves, if it can, that the surfaces have no point in common, or are spheres that touch from outside.
     pub fn does_not_cut(&self, other: &Self) -> bool {
-        are_apart(self, other) || self.contains(other) || other.contains(self) || touch_from_outside(self, other)
+        self.is_clear_of(other)
+            || are_apart(self, other)
+            || self.contains(other)
+            || other.contains(self)
+            || touch_from_outside(self, other)
     }
 
     /// Returns the faces that rays from `origin`, a point outside, can meet from outside.

@@ -14,7 +14,7 @@ mod scene;
 mod shade;
 mod shadow;
 
-use crate::plan::{Candidates, Object, Plan, Precision};
+use crate::plan::{Candidates, Object, Plan, Precision, Search};
 use crate::trace::Counts;
 use crate::trace::draft::meet::{EyeRays, Lines, Nearest, Reflected, RowSphere};
 use crate::trace::draft::mirror::{MAX_LANES, Mirror, Queue, Rays};
@@ -30,9 +30,6 @@ use crate::trace::wide::Rect;
 const TILE_WIDTH: usize = 64;
 const TILE_HEIGHT: usize = 16;
 const TILE_PIXELS: usize = TILE_WIDTH * TILE_HEIGHT;
-
-/// More objects are left to binary64: packets test what a plan lists one by one.
-const MAX_OBJECTS: usize = 512;
 
 /// What is prepared for one image.
 #[derive(Debug)]
@@ -63,7 +60,7 @@ impl Draft {
     /// `step`: of the camera.
     pub fn new(plan: &Plan<'_>, step: f64, backend: Backend) -> Option<Self> {
         let settings = &plan.settings;
-        if settings.precision != Precision::F32 || settings.samples != 1 || plan.scene.n_objects() > MAX_OBJECTS {
+        if settings.precision != Precision::F32 || settings.samples != 1 || plan.search != Search::Lists {
             return None;
         }
         let max_side = step * f64::from(settings.size.width().max(settings.size.height()) + 2);

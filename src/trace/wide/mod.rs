@@ -35,7 +35,7 @@ use std::ops::Range;
 pub(super) use self::bounds::FaceKind;
 
 use crate::math::{Ball64, Real};
-use crate::plan::{Candidates, ObjectLists, Plan};
+use crate::plan::{Candidates, ObjectLists, Plan, Search};
 use crate::trace::Counts;
 use crate::trace::kernels::{Backend, Job, Lanes, Mask};
 use crate::trace::pixel::Sampling;
@@ -57,9 +57,6 @@ const TILE_WIDTH: usize = 64;
 const TILE_HEIGHT: usize = 16;
 
 const TILE_PIXELS: usize = TILE_WIDTH * TILE_HEIGHT;
-
-/// With more objects tables of all of them, which grow with faces times lights, would cost more than they save.
-const MAX_OBJECTS: usize = 512;
 
 /// More samples along a side of a pixel are left to the slower way: a cancellation is seen between tiles.
 const MAX_SAMPLES: u32 = 16;
@@ -126,12 +123,11 @@ struct PacketHit {
 impl Wide {
     /// Prepares what a plan has left; `None` when none of it can be done wide.
     pub fn new(plan: &Plan<'_>, step: Ball64, backend: Backend) -> Option<Self> {
-        let n_objects = plan.scene.spheres.radius.len() + plan.scene.cylinders.radius.len();
         let settings = &plan.settings;
         if settings.samples > MAX_SAMPLES {
             return None;
         }
-        let is_crowd = n_objects > MAX_OBJECTS;
+        let is_crowd = plan.search == Search::Structures;
         let dir_error = 1.01 * step.error() / step.value() + 2.0 * bounds::U;
         let samples = f64::from(settings.samples);
         let max_slope = 1.01 * step.value() * samples * f64::from(settings.size.height() + 2);
