@@ -89,16 +89,17 @@ fn ties_are_in_the_certificate_with_their_places() {
     let tie = listed.iter().find(|tie| tie["column"] == 138 && tie["row"] == 84).expect("a ray that touches");
     assert_eq!((&tie["proved"], &tie["open"]), (&serde_json::json!({ "tangent": 1 }), &serde_json::json!({})));
 
-    // Two balls that are each other's mirror image, seen in a mirror between them.
-    let balls = "fov 50\nlight 1 1 1 0 5 5\nsurface .1 .1 .1 0 0 0 0 0 0 1 .5\nsphere 0 0 -14 1\n\
-                 surface .2 .2 .2 .5 .5 .5 0 0 0 1 0\nsphere -.3 .1 4 1\nsphere .3 .1 4 1\n";
+    // Two balls that are each other's mirror image, seen after some bounces on the mirror about them.
+    let balls = "fov 50\nlight 1 1 1 0 .5 -2\nsurface .1 .1 .1 0 0 0 0 0 0 1 .9\nsphere 0 .2 1 10\n\
+                 surface .2 .2 .2 .5 .5 .5 0 0 0 1 0\nsphere -.3 .1 5 1\nsphere .3 .1 5 1\n";
     folder.put("b.cli", format!("{balls}write b.png\n"));
     folder.clisc(&["run", "b.cli", "--precision", "certified", "--certificate", "open.json", "--size", "40x30"]);
     let document = certificate(&folder, "open.json");
     let image = &document["images"][0];
     assert_eq!(image["proved"], false);
-    let tie = &image["ties"]["listed"][0];
-    assert_eq!((&tie["column"], tie["open"]["order"].is_u64()), (&20.into(), true));
+    let listed = image["ties"]["listed"].as_array().expect("a list");
+    let open: Vec<_> = listed.iter().filter(|tie| tie["open"]["order"].is_u64()).collect();
+    assert!(!open.is_empty() && open.iter().all(|tie| tie["column"] == 20), "{open:?}");
 }
 
 #[test]

@@ -7,7 +7,7 @@ mod support;
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use clisc::exact::{LADDER, Part, Record, Renderer, SampleAt, Settings, Tie};
+use clisc::exact::{LADDER, Part, Pixel, Record, Renderer, SampleAt, Settings, Tie};
 
 use support::views::{compile, last_view};
 
@@ -127,34 +127,87 @@ fn ties_are_listed_with_their_places() {
     let places: Vec<_> = record.ties.iter().map(|place| (place.column, place.row)).collect();
     assert_eq!(places, [(138, 84), (162, 84)]);
     assert!(record.ties.iter().all(|place| place.proved.of(Tie::Tangent) == 1 && place.n_ties() == 1));
+    assert_eq!(record.n_pixels, [(LADDER[0], 298), (LADDER[1], 2)].into());
     assert_eq!((record.n_tied_pixels, record.n_open_pixels, record.n_ties, record.n_pixels()), (2, 0, 2, 300));
-    assert_eq!(record.n_pixels.get(&LADDER[0]), Some(&300));
 }
 
 const MIRROR: &str = "fov 50\nlight 1 1 1 0 5 5\nsurface .1 .1 .1 0 0 0 0 0 0 1 .5\nsphere 0 0 -14 1\n";
+const HALL: &str = "light 1 1 1 0 .5 -2\nsurface .1 .1 .1 0 0 0 0 0 0 1 .9\nsphere 0 .2 1 10\n";
 const TWINS_BEHIND: &str = "surface .2 .2 .2 .5 .5 .5 0 0 0 1 0\nsphere -.3 .1 4 1\nsphere .3 .1 4 1\n";
 
 #[test]
-fn a_tie_without_algebra_takes_every_bit_and_stays_open() {
-    // Two balls that are each other's mirror image meet every ray of the middle column at the same t: behind a mirror.
-    let program = compile(&format!("{MIRROR}{TWINS_BEHIND}write i.png\n"));
+fn a_tie_beyond_algebra_takes_every_bit_and_stays_open() {
+    // Two balls that are each other's mirror image meet every ray of the middle column at the same t: here after so many
+    // bounces on the wall about them that the numbers are too long.
+    let hall = format!("fov 50\n{HALL}{}", TWINS_BEHIND.replace(" 4 1", " 5 1"));
+    let program = compile(&format!("{hall}write i.png\n"));
     let settings = Settings { width: 40, height: 30, ..Settings::default() };
     let renderer = Renderer::new(last_view(&program), &settings);
-    let (tied, beside) = (renderer.pixel(20, 15), renderer.pixel(21, 15));
+    let (tied, beside) = (renderer.pixel(20, 26), renderer.pixel(21, 26));
     assert!(tied.open_ties.of(Tie::Order) > 0 && tied.bits == LADDER[LADDER.len() - 1], "{tied:?}");
     assert_eq!((beside.open_ties.total(), beside.bits), (0, LADDER[0]));
     let mut record = Record::default();
-    record.add(20, 15, &tied);
+    record.add(20, 26, &tied);
     assert_eq!((record.n_open_pixels, record.ties[0].open), (1, tied.open_ties));
 }
 
-#[test]
-fn twins_before_the_eye_are_proved_to_be_met_at_once() {
-    let twins = TWINS_BEHIND.replace(" 4 1", " -4 1");
-    let program = compile(&format!("fov 50\nlight 1 1 1 0 5 5\n{twins}write i.png\n"));
+/// Returns a pixel of 40×30, of which every tie is proved, with the ties that took algebra.
+fn pixel_by_algebra(text: &str, column: u32, row: u32) -> (Pixel, Vec<(Tie, u32)>) {
+    let program = compile(&format!("{text}write i.png\n"));
     let settings = Settings { width: 40, height: 30, ..Settings::default() };
-    let pixel = Renderer::new(last_view(&program), &settings).pixel(20, 14);
-    assert_eq!((pixel.proved_ties.of(Tie::Order), pixel.open_ties.total(), pixel.bits), (1, 0, LADDER[0]), "{pixel:?}");
+    let pixel = Renderer::new(last_view(&program), &settings).pixel(column, row);
+    assert_eq!((pixel.open_ties.total(), pixel.bits), (0, LADDER[1]), "{text}{pixel:?}");
+    let ties = pixel.algebraic_ties.met().collect();
+    (pixel, ties)
+}
+
+#[test]
+fn twins_are_proved_to_be_met_at_once() {
+    // Before the eye, and in a mirror between them; whatever tan 25° is.
+    let before = format!("fov 50\nlight 1 1 1 0 5 5\n{}", TWINS_BEHIND.replace(" 4 1", " -4 1"));
+    assert_eq!(pixel_by_algebra(&before, 20, 14).1, [(Tie::Order, 1)]);
+    assert_eq!(pixel_by_algebra(&format!("{MIRROR}{TWINS_BEHIND}"), 20, 15).1, [(Tie::Order, 1)]);
+}
+
+#[test]
+fn equators_are_proved_to_lie_on_walls() {
+    // The ball closes the tube: their circle in the plane of the eye is met by the whole middle row.
+    let capsule = "light 1 1 1 0 5 5\nsurface .1 .1 .1 .5 .5 .5 0 0 0 1 0\ncylinder 1 .1 -4 -2 0\nsphere .1 0 -4 1\n";
+    let (pixel, ties) = pixel_by_algebra(&format!("fov 47.5\n{capsule}"), 22, 15);
+    assert!(ties.iter().any(|(tie, _)| *tie == Tie::Order), "{pixel:?}");
+}
+
+#[test]
+fn shadows_that_touch_are_proved_to() {
+    // Two columns touch each other along x = 0, z = -4; seen from there is a floor, lit by a light over the same line.
+    let columns = "light 1 1 1 0 3 -6\nsurface .2 .2 .2 .8 .8 .8 0 0 0 1 0\ncylinder 9 0 -4 -2 -1\n\
+                   cylinder 1 -1 -4 -1 2\ncylinder 1 1 -4 -1 2\n";
+    for fov in [60.0, 50.0] {
+        let (pixel, ties) = pixel_by_algebra(&format!("fov {fov}\n{columns}"), 20, 29);
+        assert_eq!((pixel.rgb, &*ties), ([51; 3], &[(Tie::Tangent, 1)][..]), "{pixel:?}");
+    }
+}
+
+/// The ground of an original scene: eye rays meet its rim exactly in three of 300×300 pixels.
+#[test]
+fn rims_are_proved_to_be_met() {
+    let program = |radius: f64| {
+        let ground = format!("surface .2 .2 .2 .8 .8 .8 0 0 0 1 0\ncylinder {radius} 0 0 -2 -1");
+        compile(&format!("fov 60\nbackground 0 0 1\n{ground}\nwrite i.png\n"))
+    };
+    let pixel_at = |radius: f64, [column, row]: [u32; 2]| {
+        Renderer::new(last_view(&program(radius)), &Settings::default()).pixel(column, row)
+    };
+    for place in [[140, 176], [160, 176], [0, 180]] {
+        let pixel = pixel_at(10.0, place);
+        assert_eq!((pixel.algebraic_ties.of(Tie::Rim), pixel.open_ties.total(), pixel.bits), (2, 0, LADDER[1]));
+        // By a last bit more or less the ray meets the cap, or the wall from inside.
+        for radius in [10_f64.next_up(), 10_f64.next_down()] {
+            let pixel = pixel_at(radius, place);
+            let n_ties = pixel.proved_ties.total() + pixel.algebraic_ties.total() + pixel.open_ties.total();
+            assert_eq!(n_ties, 0, "{radius} {place:?} {pixel:?}");
+        }
+    }
 }
 
 /// In steps an eye ray goes along (X√w, Y√w, −M), and touches a ball where b² = a·p; see `src/exact/grid.rs`.
@@ -173,8 +226,30 @@ fn rays_that_touch_are_proved_to_for_60_90_and_120_degrees() {
         let program = compile(&format!("fov {fov}\nsurface 1 1 1 0 0 0 0 0 0 1 0\n{body}\nwrite i.png\n"));
         let settings = Settings { width, height, ..Settings::default() };
         let pixel = Renderer::new(last_view(&program), &settings).pixel(column, row);
-        assert_eq!((pixel.rgb, pixel.bits), ([255; 3], LADDER[0]), "{body}: {pixel:?}");
-        assert_eq!((pixel.proved_ties.of(Tie::Tangent), pixel.open_ties.total()), (1, 0), "{body}: {pixel:?}");
+        assert!(pixel.rgb == [255; 3] && pixel.bits <= LADDER[1], "{body}: {pixel:?}");
+        assert_eq!((n_touching(&pixel), pixel.open_ties.total()), (1, 0), "{body}: {pixel:?}");
+    }
+}
+
+fn n_touching(pixel: &Pixel) -> u32 {
+    pixel.proved_ties.of(Tie::Tangent) + pixel.algebraic_ties.of(Tie::Tangent)
+}
+
+#[test]
+fn rays_that_almost_touch_are_not_taken_to() {
+    // Those of above, and the same a last bit nearer or further.
+    for (fov, [width, height], [column, row], center, radius) in [
+        (60, [4, 4], [3, 2], "0 6 -13", 7.0),
+        (120, [4, 4], [3, 2], "0 4 -14", 10.0),
+        (60, [300, 300], [138, 84], "0 0 -4", 1.0),
+    ] {
+        for (radius, expected) in [(f64::next_down(radius), [0; 3]), (f64::next_up(radius), [255; 3])] {
+            let text = format!("fov {fov}\nsurface 1 1 1 0 0 0 0 0 0 1 0\nsphere {center} {radius}\nwrite i.png\n");
+            let program = compile(&text);
+            let settings = Settings { width, height, ..Settings::default() };
+            let pixel = Renderer::new(last_view(&program), &settings).pixel(column, row);
+            assert_eq!((pixel.rgb, n_touching(&pixel), pixel.open_ties.total()), (expected, 0, 0), "{text}{pixel:?}");
+        }
     }
 }
 

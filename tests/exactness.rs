@@ -12,7 +12,7 @@ use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use clisc::exact::{Pixel, Renderer, Tie};
+use clisc::exact::{LADDER, Pixel, Renderer, Tie};
 use clisc::exec::exact_settings;
 use clisc::ir::{self, Registers, SceneView};
 use clisc::plan::{Part, SampleAt, Settings, Size, plan};
@@ -188,6 +188,30 @@ fn exact_does_not_depend_on_its_precision() {
 }
 
 #[test]
+fn exact_does_not_depend_on_its_algebra() {
+    let mut n_answers = 0;
+    for (title, sketch, size) in cases(FAMILIES).chain(cases(FINEST)) {
+        let made = sketch.make();
+        let settings = sized(size);
+        let without = renderer(made.view(), &settings).without_algebra();
+        let width = settings.size.width();
+        let asking =
+            (0..).zip(pixels(&renderer(made.view(), &settings), settings.size)).filter(|(_, p)| p.bits > LADDER[0]);
+        for (i, pixel) in asking.step_by(7) {
+            let other = without.pixel(i % width, i / width);
+            assert_eq!(pixel.rgb, other.rgb, "{title} pixel {i}: {pixel:?} {other:?}");
+            // What is equal by algebra is what no precision can tell apart.
+            for (tie, n) in pixel.algebraic_ties.met() {
+                let n_open = other.open_ties.of(tie) + other.proved_ties.of(tie);
+                assert!(n <= n_open, "{title} pixel {i}: {pixel:?} {other:?}");
+                n_answers += n;
+            }
+        }
+    }
+    assert!(n_answers > 20, "{n_answers} ties");
+}
+
+#[test]
 fn exact_does_not_depend_on_its_filter() {
     for (title, sketch, size) in cases(FAMILIES).step_by(2) {
         let made = sketch.make();
@@ -206,7 +230,7 @@ fn exact_draws_touching_rays_and_counts_them() {
     let program = ir::validate(clisc::compile(&Source::new("scene.cli", scene)).program).expect("a sound program");
     let exact = renderer(whole(&program), &sized([300, 300]));
     let touching = exact.pixel(138, 84);
-    assert_eq!((touching.rgb, touching.proved_ties.of(Tie::Tangent)), ([14, 54, 3], 1));
+    assert_eq!((touching.rgb, touching.algebraic_ties.of(Tie::Tangent)), ([14, 54, 3], 1));
     assert_eq!(touching.open_ties.total(), 0);
     let beside = exact.pixel(138, 83);
     assert_eq!((beside.rgb, beside.proved_ties.total() + beside.open_ties.total()), ([0; 3], 0));

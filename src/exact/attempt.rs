@@ -1,14 +1,15 @@
 //! One pixel at one precision: the semantics from the eye ray to the bytes.
 
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use std::cmp::Ordering;
 
-use crate::exact::ball::Ball;
+use crate::exact::algebra::Algebra;
 use crate::exact::intersect::Ray;
+use crate::exact::real::Real;
 use crate::exact::scene::{Body, Scene};
 use crate::exact::tie::{Tie, Ties};
-use crate::exact::vec3::{add, divide};
-use crate::exact::{Pixel, SampleAt, Settings};
+use crate::exact::vec3::{Vec3, add, divide};
+use crate::exact::{Pixel, Renderer, SampleAt, Settings};
 use crate::ir;
 
 /// Added to 255 c before it is rounded down, so that 0.6 = 153/255 gives 153. The semantics fix it at 2⁻²⁰.
@@ -32,78 +33,109 @@ pub struct Attempt<'a> {
     pub is_last: bool,
     /// Whether the filter in binary64 is off.
     pub tests_all: bool,
-    pub proved: Cell<Ties>,
-    pub open: Cell<Ties>,
+    /// Who is asked what balls leave open, unless the scene is without algebra.
+    algebra: RefCell<Algebra>,
+    found: Cell<Found>,
 }
 
-impl Attempt<'_> {
-    /// Decides the sign of a number.
-    pub fn sign(&self, value: &Ball, tie: Tie) -> Decided<Ordering> {
-        match value.sign() {
-            Some(Ordering::Equal) => Ok(self.equal(tie)),
-            Some(sign) => Ok(sign),
-            None if self.is_last => {
-                count(&self.open, tie);
-                Ok(Ordering::Equal)
-            }
-            None => Err(Undecided),
+/// The ties that were found so far.
+#[derive(Clone, Copy, Debug, Default)]
+struct Found {
+    exact: Ties,
+    algebraic: Ties,
+    open: Ties,
+}
+
+impl<'a> Attempt<'a> {
+    /// Prepares the making of one pixel of `renderer`, in the arithmetic of `scene`.
+    pub fn new<'p: 'a>(renderer: &'a Renderer<'p>, scene: &'a Scene, is_last: bool) -> Self {
+        Self {
+            scene,
+            bodies: renderer.bodies(),
+            surfaces: renderer.view.surfaces(),
+            settings: &renderer.settings,
+            is_last,
+            tests_all: renderer.tests_all,
+            algebra: RefCell::new(Algebra::new(scene.kappa.clone())),
+            found: Cell::default(),
         }
     }
 
-    /// Counts a tie that is proved.
-    pub fn equal(&self, tie: Tie) -> Ordering {
-        count(&self.proved, tie);
-        Ordering::Equal
+    /// Decides the sign of a number.
+    pub fn sign(&self, value: &Real, tie: Tie) -> Decided<Ordering> {
+        if let Some(sign) = value.sign() {
+            return Ok(self.noted(sign, tie, |found| &mut found.exact));
+        }
+        let expression = value.expression();
+        if let Some(sign) = expression.and_then(|expression| self.algebra.borrow_mut().sign(expression)) {
+            return Ok(self.noted(sign, tie, |found| &mut found.algebraic));
+        }
+        if self.is_last { Ok(self.noted(Ordering::Equal, tie, |found| &mut found.open)) } else { Err(Undecided) }
     }
 
-    /// Returns an exact number at the precision of the pixel.
-    pub fn ball(&self, value: f64) -> Ball {
-        Ball::exact(value, self.scene.bits)
+    /// Counts a tie if there is one.
+    fn noted(&self, sign: Ordering, tie: Tie, ties: impl Fn(&mut Found) -> &mut Ties) -> Ordering {
+        if sign == Ordering::Equal {
+            let mut found = self.found.get();
+            ties(&mut found).count(tie);
+            self.found.set(found);
+        }
+        sign
+    }
+
+    /// Returns a number of the scene in the arithmetic of the pixel.
+    pub fn number(&self, value: f64) -> Real {
+        self.scene.arithmetic.number(value)
+    }
+
+    /// Returns the vector of three such numbers.
+    pub fn vec3(&self, values: [f64; 3]) -> Vec3 {
+        self.scene.arithmetic.vec3(values)
     }
 
     /// Makes the pixel.
     pub fn pixel(&self, column: u32, row: u32) -> Decided<Pixel> {
         let n = self.settings.samples;
-        let mut sum = [0.0; 3].map(|zero| self.ball(zero));
+        let mut sum = self.vec3([0.0; 3]);
         for sample_row in 0..n {
             for sample_column in 0..n {
                 let ray = self.eye_ray(column, row, sample_column, sample_row);
                 sum = add(&sum, &self.radiance(&ray, 0)?);
             }
         }
-        let average = if n == 1 { sum } else { divide(&sum, &self.ball(f64::from(n) * f64::from(n))) };
+        let average = if n == 1 { sum } else { divide(&sum, &self.number(f64::from(n) * f64::from(n))) };
         let mut pixel = Pixel {
             rgb: [0; 3],
             channels: [0.0; 3],
             error: 0.0,
             slack: f64::INFINITY,
             proved_ties: Ties::default(),
+            algebraic_ties: Ties::default(),
             open_ties: Ties::default(),
-            bits: self.scene.bits,
+            bits: self.scene.arithmetic.bits,
         };
         for (axis, channel) in average.iter().enumerate() {
-            let value = channel * &self.ball(255.0);
+            let value = channel * &self.number(255.0);
             let (byte, slack) = self.quantise(&value)?;
             pixel.rgb[axis] = byte;
             pixel.channels[axis] = value.to_f64();
             pixel.error = pixel.error.max(value.radius());
             pixel.slack = pixel.slack.min(slack);
         }
-        pixel.proved_ties = self.proved.get();
-        pixel.open_ties = self.open.get();
-        Ok(pixel)
+        let Found { exact, algebraic, open } = self.found.get();
+        Ok(Pixel { proved_ties: exact, algebraic_ties: algebraic, open_ties: open, ..pixel })
     }
 
     /// Returns ⌊`value` + 2⁻²⁰⌋ and the distance of `value` + 2⁻²⁰ to the nearest whole number.
-    fn quantise(&self, value: &Ball) -> Decided<(u8, f64)> {
-        let biased = value + &self.ball(QUANTISE_BIAS);
+    fn quantise(&self, value: &Real) -> Decided<(u8, f64)> {
+        let biased = value + &self.number(QUANTISE_BIAS);
         let mut floor = biased.to_f64().floor().clamp(0.0, 255.0);
-        if self.sign(&(&biased - &self.ball(floor + 1.0)), Tie::Quantise)? != Ordering::Less {
+        if self.sign(&(&biased - &self.number(floor + 1.0)), Tie::Quantise)? != Ordering::Less {
             floor += 1.0;
-        } else if self.sign(&(&biased - &self.ball(floor)), Tie::Quantise)? == Ordering::Less {
+        } else if self.sign(&(&biased - &self.number(floor)), Tie::Quantise)? == Ordering::Less {
             floor -= 1.0;
         }
-        let [below, above] = [floor, floor + 1.0].map(|whole| (&biased - &self.ball(whole)).to_f64().abs());
+        let [below, above] = [floor, floor + 1.0].map(|whole| (&biased - &self.number(whole)).to_f64().abs());
         Ok((floor as u8, below.min(above)))
     }
 
@@ -121,13 +153,7 @@ impl Attempt<'_> {
         };
         let x = n * (2.0 * f64::from(column) - width) + offset(sample_column);
         let y = n * (height - 2.0 * f64::from(row)) - offset(sample_row);
-        let dir = [&self.ball(x) * &self.scene.grid.step, &self.ball(y) * &self.scene.grid.step, self.ball(-1.0)];
-        Ray::from_eye([0.0; 3].map(|zero| self.ball(zero)), dir, [x, y])
+        let dir = [&self.number(x) * &self.scene.step, &self.number(y) * &self.scene.step, self.number(-1.0)];
+        Ray::new(self.vec3([0.0; 3]), dir, Vec::new())
     }
-}
-
-fn count(ties: &Cell<Ties>, tie: Tie) {
-    let mut counts = ties.get();
-    counts.count(tie);
-    ties.set(counts);
 }

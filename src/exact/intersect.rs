@@ -3,9 +3,8 @@
 use std::cmp::Ordering;
 
 use crate::exact::attempt::{Attempt, Decided};
-use crate::exact::ball::Ball;
-use crate::exact::grid::has_same_quadratic;
 use crate::exact::reach::{ApproxRay, approximate_bound};
+use crate::exact::real::Real;
 use crate::exact::scene::{Body, Cap, Equation, Quadric};
 use crate::exact::tie::Tie;
 use crate::exact::vec3::{Vec3, add, scale};
@@ -16,8 +15,6 @@ pub struct Ray {
     pub origin: Vec3,
     pub dir: Vec3,
     leaves: Vec<Equation>,
-    /// The place that an eye ray goes through, in steps from the middle of the image, right and up.
-    steps: Option<[f64; 2]>,
     approx: Option<ApproxRay>,
 }
 
@@ -25,16 +22,11 @@ impl Ray {
     /// Makes a ray; `leaves` are the surfaces on which its origin lies.
     pub fn new(origin: Vec3, dir: Vec3, leaves: Vec<Equation>) -> Self {
         let approx = ApproxRay::new(&origin, &dir);
-        Self { origin, dir, leaves, steps: None, approx }
-    }
-
-    /// Makes the ray from the eye at `origin` that goes through a place of the image.
-    pub fn from_eye(origin: Vec3, dir: Vec3, steps: [f64; 2]) -> Self {
-        Self { steps: Some(steps), ..Self::new(origin, dir, Vec::new()) }
+        Self { origin, dir, leaves, approx }
     }
 
     /// Returns the point at `t`.
-    pub fn at(&self, t: &Ball) -> Vec3 {
+    pub fn at(&self, t: &Real) -> Vec3 {
         add(&self.origin, &scale(t, &self.dir))
     }
 }
@@ -42,7 +34,7 @@ impl Ray {
 /// Where a ray meets a body.
 #[derive(Debug)]
 pub struct Hit {
-    pub t: Ball,
+    pub t: Real,
     pub body_idx: usize,
     /// The cap that is met; `None` is the sphere or the wall.
     pub cap: Option<Cap>,
@@ -57,13 +49,13 @@ pub struct Hit {
 }
 
 /// A root t > 0 and its place among the two, rising; of two that are one, the first.
-type Root = (u8, Ball);
+type Root = (u8, Real);
 
 /// a t² + 2 b t + c = 0, the equation of a ray and a quadric.
 struct Quadratic {
-    a: Ball,
-    b: Ball,
-    c: Ball,
+    a: Real,
+    b: Real,
+    c: Real,
     /// t = 0 is a root, because the ray leaves this surface.
     starts_on: bool,
     /// t = 1 is a root, because the light at the ray's end lies on this surface.
@@ -71,7 +63,7 @@ struct Quadratic {
 }
 
 impl Quadratic {
-    fn discriminant(&self) -> Ball {
+    fn discriminant(&self) -> Real {
         &(&self.b * &self.b) - &(&self.a * &self.c)
     }
 }
@@ -87,7 +79,7 @@ impl Attempt<'_> {
             }
             for hit in self.hits(ray, body_idx, None)? {
                 if let Some(best) = &mut closest {
-                    match self.compare(ray, &hit, best)? {
+                    match self.compare(&hit, best)? {
                         Ordering::Greater => continue,
                         Ordering::Equal => {
                             best.also.push(hit.equation);
@@ -105,7 +97,7 @@ impl Attempt<'_> {
 
     /// Tells whether any surface is met on the way from a hit (t = 0) to a light (t = 1).
     pub fn is_occluded(&self, to_light: &Ray, light_idx: usize) -> Decided<bool> {
-        let one = self.ball(1.0);
+        let one = self.number(1.0);
         for (body_idx, &body) in self.bodies.iter().enumerate() {
             if self.is_left_out(to_light, body, 1.0) {
                 continue;
@@ -120,18 +112,12 @@ impl Attempt<'_> {
     }
 
     /// Compares two hits of one ray by t.
-    fn compare(&self, ray: &Ray, a: &Hit, b: &Hit) -> Decided<Ordering> {
+    fn compare(&self, a: &Hit, b: &Hit) -> Decided<Ordering> {
         if a.equation == b.equation {
             return Ok(a.root.cmp(&b.root));
         }
         let tie = if a.body_idx == b.body_idx { Tie::OwnRim } else { Tie::Order };
-        let difference = &a.t - &b.t;
-        let is_same = || {
-            let [one, other] = [a, b].map(|hit| self.bodies[hit.body_idx].reach());
-            let are_curved = a.cap.is_none() && b.cap.is_none();
-            are_curved && a.root == b.root && ray.steps.is_some_and(|steps| has_same_quadratic(steps, &one, &other))
-        };
-        if difference.sign().is_none() && is_same() { Ok(self.equal(tie)) } else { self.sign(&difference, tie) }
+        self.sign(&(&a.t - &b.t), tie)
     }
 
     /// Tells whether a body is surely not met before `t_max`.
@@ -146,7 +132,7 @@ impl Attempt<'_> {
     /// which is left out by algebra.
     fn hits(&self, ray: &Ray, body_idx: usize, light_idx: Option<usize>) -> Decided<Vec<Hit>> {
         let body = self.bodies[body_idx];
-        let quadric = body.quadric(self.scene.bits);
+        let quadric = body.quadric(self.scene.arithmetic);
         let mut hits = Vec::new();
         for (root, t) in self.quadric_roots(ray, body, &quadric, light_idx)? {
             if self.is_between_caps(ray, body, root, &t)? {
@@ -155,7 +141,7 @@ impl Attempt<'_> {
                 break;
             }
         }
-        for cap in body.caps(self.scene.bits) {
+        for cap in body.caps(self.scene.arithmetic) {
             let equation = Equation::Cap(cap.y_exact);
             let light_y = light_idx.map(|light_idx| self.scene.lights[light_idx].position_exact[1]);
             if light_y == Some(cap.y_exact) || ray.leaves.contains(&equation) {
@@ -173,8 +159,8 @@ impl Attempt<'_> {
     }
 
     /// Tells whether a meeting with the quadric is one with the body: always, but for what caps cut off.
-    fn is_between_caps(&self, ray: &Ray, body: Body<'_>, root: u8, t: &Ball) -> Decided<bool> {
-        for cap in body.caps(self.scene.bits) {
+    fn is_between_caps(&self, ray: &Ray, body: Body<'_>, root: u8, t: &Real) -> Decided<bool> {
+        for cap in body.caps(self.scene.arithmetic) {
             let y = &ray.origin[1] + &(t * &ray.dir[1]);
             let is_within = match self.sign(&cap.inward(&(&y - &cap.y)), Tie::Rim)? {
                 Ordering::Less => false,
@@ -190,7 +176,7 @@ impl Attempt<'_> {
     }
 
     /// Tells whether a meeting with a cap's plane is one with the cap.
-    fn is_within_rim(&self, ray: &Ray, wall: &Quadric, cap: &Cap, t: &Ball) -> Decided<bool> {
+    fn is_within_rim(&self, ray: &Ray, wall: &Quadric, cap: &Cap, t: &Real) -> Decided<bool> {
         let p = ray.at(t);
         Ok(match self.sign(&wall.at(&p), Tie::Rim)? {
             Ordering::Less => true,
@@ -209,7 +195,7 @@ impl Attempt<'_> {
     }
 
     /// Returns the t > 0 with t · `d_y` = `height`.
-    fn plane_root(&self, height: &Ball, d_y: &Ball) -> Decided<Option<Ball>> {
+    fn plane_root(&self, height: &Real, d_y: &Real) -> Decided<Option<Real>> {
         let direction = self.sign(d_y, Tie::Parallel)?;
         if direction == Ordering::Equal || self.sign(height, Tie::Start)? != direction {
             return Ok(None);
@@ -226,21 +212,17 @@ impl Attempt<'_> {
         light_idx: Option<usize>,
     ) -> Decided<Vec<Root>> {
         let is_on = |light_idx: usize| body.side_of(self.scene.lights[light_idx].position_exact) == Ordering::Equal;
-        let touches = || ray.steps.is_some_and(|steps| self.scene.grid.touches(steps, &body.reach()));
-        let quadratic = Quadratic {
+        self.roots(&Quadratic {
             a: quadric.dot(&ray.dir, &ray.dir),
             b: quadric.dot(&quadric.offset(&ray.origin), &ray.dir),
             c: quadric.at(&ray.origin),
             starts_on: ray.leaves.contains(&quadric.equation),
             ends_on: light_idx.is_some_and(is_on),
-        };
-        self.roots(&quadratic, touches)
+        })
     }
 
     /// Returns the roots t > 0.
-    ///
-    /// `touches`: tells whether the discriminant is proved to be 0 by algebra.
-    fn roots(&self, quadratic: &Quadratic, touches: impl Fn() -> bool) -> Decided<Vec<Root>> {
+    fn roots(&self, quadratic: &Quadratic) -> Decided<Vec<Root>> {
         let Quadratic { a, b, c, starts_on, ends_on } = quadratic;
         if self.sign(a, Tie::Parallel)? == Ordering::Equal {
             return Ok(Vec::new());
@@ -268,12 +250,7 @@ impl Attempt<'_> {
                     return Ok(Vec::new());
                 }
                 let discriminant = quadratic.discriminant();
-                let is_open = discriminant.sign().is_none();
-                match if is_open && touches() {
-                    self.equal(Tie::Tangent)
-                } else {
-                    self.sign(&discriminant, Tie::Tangent)?
-                } {
+                match self.sign(&discriminant, Tie::Tangent)? {
                     Ordering::Less => Ok(Vec::new()),
                     Ordering::Equal => Ok(vec![(0, &-b / a)]),
                     Ordering::Greater => {

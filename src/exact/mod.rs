@@ -3,22 +3,24 @@
 //! It follows the semantics formula by formula in [ball arithmetic](ball), so each comparison is either proved or open. An
 //! open one makes the pixel again with twice the bits ([`LADDER`]); what is still open at the last precision is taken for a
 //! tie, counted, listed with its place, and settled by the rule that the semantics have for equality. There is no epsilon.
-//! Of the ties that ordinary scenes have, eye rays that touch a surface, many are proved by algebra (`grid`).
+//! Before that [`algebra`] is asked, which proves ties and
+//! near ties that are not too deep in mirrors.
 //!
 //! One rule is narrower than its text, because the original image of scene i6 says so in pixel (0, 180): the far rim of a
 //! cylinder that a ray touches in passing, leaving the infinite wall as it comes down to the cap, is no hit.
 //!
 //! It settles what `trace` leaves open, and is what `trace` is held against. For that it shares
-//! nothing with it but the IR, and takes no short way but one ([`Renderer::testing_all`]). A helper that both used would
+//! nothing with it but the IR, and takes no short ways but two ([`Renderer::testing_all`], [`Renderer::without_algebra`]). A helper that both used would
 //! hide its faults from the comparison.
 //!
 //! Never here: `plan`, `trace` and `math`; files, the clock.
 
+mod algebra;
 mod attempt;
 pub mod ball;
-mod grid;
 mod intersect;
 mod reach;
+mod real;
 mod record;
 mod scene;
 mod settings;
@@ -30,13 +32,13 @@ pub use record::{Record, TiePlace};
 pub use settings::{Part, SampleAt, Settings};
 pub use tie::{Tie, Ties};
 
-use std::cell::Cell;
 use std::ops::Range;
 use std::sync::OnceLock;
 
 use rayon::prelude::*;
 
 use crate::exact::attempt::Attempt;
+use crate::exact::real::Arithmetic;
 use crate::exact::scene::{Body, Scene};
 use crate::image::RgbImage;
 use crate::ir::SceneView;
@@ -58,8 +60,10 @@ pub struct Pixel {
     pub error: f64,
     /// The least distance of a channel's 255 c + 2⁻²⁰ to a whole number.
     pub slack: f64,
-    /// The comparisons of equal quantities that were proved equal by exact operations.
+    /// The comparisons of equal quantities that were computed without rounding.
     pub proved_ties: Ties,
+    /// Those that were proved equal by algebra.
+    pub algebraic_ties: Ties,
     /// The comparisons that no precision of the ladder could decide. Without any the pixel is proved.
     pub open_ties: Ties,
     /// The precision that gave the pixel.
@@ -76,6 +80,7 @@ pub struct Renderer<'p> {
     /// The scene at each precision of the ladder, once it was asked for.
     scenes: Vec<OnceLock<Scene>>,
     tests_all: bool,
+    asks_algebra: bool,
 }
 
 impl<'p> Renderer<'p> {
@@ -98,13 +103,19 @@ impl<'p> Renderer<'p> {
         assert!(!ladder.is_empty(), "no precision");
         let scenes = ladder.iter().map(|_| OnceLock::new()).collect();
         let (settings, ladder) = (settings.clone(), ladder.to_vec());
-        Self { view, settings, ladder, bodies: OnceLock::new(), scenes, tests_all: false }
+        Self { view, settings, ladder, bodies: OnceLock::new(), scenes, tests_all: false, asks_algebra: true }
     }
 
     /// Tests every ray against every body, without the filter in binary64.
     #[must_use]
     pub fn testing_all(self) -> Self {
         Self { tests_all: true, ..self }
+    }
+
+    /// Leaves to precision alone what algebra would decide.
+    #[must_use]
+    pub fn without_algebra(self) -> Self {
+        Self { asks_algebra: false, ..self }
     }
 
     /// Renders one pixel.
@@ -114,23 +125,20 @@ impl<'p> Renderer<'p> {
     #[must_use]
     pub fn pixel(&self, column: u32, row: u32) -> Pixel {
         assert!(column < self.settings.width && row < self.settings.height, "a pixel outside the image");
-        let bodies = self.bodies.get_or_init(|| scene::bodies(&self.view, self.settings.part));
         for (i, &bits) in self.ladder.iter().enumerate() {
-            let attempt = Attempt {
-                scene: self.scenes[i].get_or_init(|| Scene::new(&self.view, &self.settings, bits)),
-                bodies,
-                surfaces: self.view.surfaces(),
-                settings: &self.settings,
-                is_last: i + 1 == self.ladder.len(),
-                tests_all: self.tests_all,
-                proved: Cell::default(),
-                open: Cell::default(),
-            };
-            if let Ok(pixel) = attempt.pixel(column, row) {
+            let is_last = i + 1 == self.ladder.len();
+            // Most pixels need no algebra, and remembering how numbers were made takes time.
+            let arithmetic = Arithmetic { bits, has_algebra: self.asks_algebra && (i > 0 || is_last) };
+            let scene = self.scenes[i].get_or_init(|| Scene::new(&self.view, &self.settings, arithmetic));
+            if let Ok(pixel) = Attempt::new(self, scene, is_last).pixel(column, row) {
                 return pixel;
             }
         }
         unreachable!("the last precision leaves nothing open")
+    }
+
+    fn bodies(&self) -> &[Body<'p>] {
+        self.bodies.get_or_init(|| scene::bodies(&self.view, self.settings.part))
     }
 
     /// Renders `rows` into `rgb`, 3 bytes a pixel, row by row from the top, on all threads of the current rayon pool, until

@@ -15,7 +15,7 @@
 //!
 //! U and V lie within 2^±900, T and T·V are normal numbers, and so nothing is lost to underflow that could matter.
 
-use crate::exact::ball::Ball;
+use crate::exact::real::Real;
 use crate::exact::vec3::Vec3;
 
 /// What a body is for the filter: a sphere, or an endless upright cylinder.
@@ -96,7 +96,7 @@ fn approximate(v: &Vec3) -> Option<[f64; 3]> {
 }
 
 /// Returns a number in binary64 if it is known to 2⁻⁴⁰ of itself and normal there, else infinity.
-pub fn approximate_bound(t: &Ball) -> f64 {
+pub fn approximate_bound(t: &Real) -> f64 {
     let approx = t.to_f64();
     if approx.is_normal() && t.is_sharp_beside(t, SHARP_BITS) { approx } else { f64::INFINITY }
 }

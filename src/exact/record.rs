@@ -13,7 +13,8 @@ pub struct TiePlace {
     pub column: u32,
     /// What no precision could decide.
     pub open: Ties,
-    /// Rays that are proved to touch what they meet, and hits of two bodies that are proved to be at equal t.
+    /// What is proved to be equal: rays that touch what they meet or meet its rim, hits at equal t, and whatever took
+    /// algebra. Others that need no rounding are common, as a ray that is level with a cap, and not told.
     pub proved: Ties,
 }
 
@@ -21,8 +22,8 @@ impl TiePlace {
     /// Returns what is to be told of a pixel, if it has ties.
     #[must_use]
     pub fn of(column: u32, row: u32, pixel: &Pixel) -> Option<Self> {
-        let place =
-            Self { row, column, open: pixel.open_ties, proved: pixel.proved_ties.only(&[Tie::Tangent, Tie::Order]) };
+        let told = pixel.proved_ties.only(&[Tie::Tangent, Tie::Rim, Tie::Order, Tie::OwnRim]);
+        let place = Self { row, column, open: pixel.open_ties, proved: told.plus(&pixel.algebraic_ties) };
         (place.n_ties() > 0).then_some(place)
     }
 

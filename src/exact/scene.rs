@@ -1,10 +1,11 @@
-//! A scene, and what of it is needed at one precision.
+//! A scene, and what of it is needed in one arithmetic.
 
 use std::cmp::Ordering;
 
+use crate::exact::algebra::Kappa;
 use crate::exact::ball::Ball;
-use crate::exact::grid::Grid;
 use crate::exact::reach::Reach;
+use crate::exact::real::{Arithmetic, Real};
 use crate::exact::vec3::Vec3;
 use crate::exact::{Part, Settings};
 use crate::ir::{self, SceneView};
@@ -51,24 +52,23 @@ impl Body<'_> {
         }
     }
 
-    /// Returns the sphere or the infinite wall, at a precision.
-    pub fn quadric(self, bits: usize) -> Quadric {
+    /// Returns the sphere or the infinite wall.
+    pub fn quadric(self, arithmetic: Arithmetic) -> Quadric {
         let Reach { center, radius, axes } = self.reach();
         let equation = match self {
             Self::Sphere(_) => Equation::Sphere([center[0], center[1], center[2], radius]),
             Self::Cylinder(_) => Equation::Wall([center[0], center[2], radius]),
         };
-        let ball = |number| Ball::exact(number, bits);
-        Quadric { equation, center: center.map(ball), radius: ball(radius), axes }
+        Quadric { equation, center: arithmetic.vec3(center), radius: arithmetic.number(radius), axes }
     }
 
-    /// Returns the caps, at a precision: of a cylinder the lower and the upper.
-    pub fn caps(self, bits: usize) -> impl Iterator<Item = Cap> {
+    /// Returns the caps: of a cylinder the lower and the upper.
+    pub fn caps(self, arithmetic: Arithmetic) -> impl Iterator<Item = Cap> {
         let heights = match self {
             Self::Sphere(_) => None,
             Self::Cylinder(c) => Some([(c.y_min, -1.0), (c.y_max, 1.0)]),
         };
-        heights.into_iter().flatten().map(move |(y, normal)| Cap { y: Ball::exact(y, bits), y_exact: y, normal })
+        heights.into_iter().flatten().map(move |(y, normal)| Cap { y: arithmetic.number(y), y_exact: y, normal })
     }
 
     /// Returns on which side of the sphere or the infinite wall a point lies: `Less` is inside, `Equal` on it. Nothing is
@@ -90,7 +90,7 @@ impl Body<'_> {
 pub struct Quadric {
     pub equation: Equation,
     pub center: Vec3,
-    pub radius: Ball,
+    pub radius: Real,
     /// The axes that the equation has.
     pub axes: &'static [usize],
 }
@@ -98,7 +98,7 @@ pub struct Quadric {
 /// A cap of a cylinder.
 #[derive(Debug)]
 pub struct Cap {
-    pub y: Ball,
+    pub y: Real,
     /// The same, to compare with.
     pub y_exact: f64,
     /// The y of the outward normal: −1 for the lower cap, 1 for the upper.
@@ -121,7 +121,7 @@ pub struct Surface {
     pub diffuse: Vec3,
     pub specular: Vec3,
     pub shininess: f64,
-    pub reflectance: Ball,
+    pub reflectance: Real,
 }
 
 /// Returns the bodies that are drawn, in the order of declaration.
@@ -136,27 +136,33 @@ pub fn bodies<'p>(view: &SceneView<'p>, part: Part) -> Vec<Body<'p>> {
     bodies
 }
 
-/// What of a scene is the same for all pixels, at one precision.
+/// What of a scene is the same for all pixels, in one arithmetic.
 #[derive(Debug)]
 pub struct Scene {
-    pub bits: usize,
-    pub grid: Grid,
+    pub arithmetic: Arithmetic,
+    /// From one step of the image to the next, at z = −1: k/N, where half the height of the image has N steps.
+    pub step: Real,
+    /// What algebra knows of k.
+    pub kappa: Kappa,
     pub background: Vec3,
     pub lights: Vec<Light>,
 }
 
 impl Scene {
-    /// Takes what a view shows to `bits` of precision.
-    pub fn new(view: &SceneView<'_>, settings: &Settings, bits: usize) -> Self {
-        let vec3 = |v: glam::DVec3| v.to_array().map(|x| Ball::exact(x, bits));
+    /// Takes what a view shows.
+    pub fn new(view: &SceneView<'_>, settings: &Settings, arithmetic: Arithmetic) -> Self {
+        let vec3 = |v: glam::DVec3| arithmetic.vec3(v.to_array());
         let lights = view.lights().iter().map(|light| Light {
             color: vec3(light.color),
             position: vec3(light.position),
             position_exact: light.position.to_array(),
         });
+        let (half_width, kappa) = arithmetic.half_width(view.fov_deg());
+        let n_steps = f64::from(settings.samples) * f64::from(settings.height);
         Self {
-            bits,
-            grid: Grid::new(view.fov_deg(), settings, bits),
+            arithmetic,
+            step: &half_width / &arithmetic.number(n_steps),
+            kappa,
             background: vec3(view.background()),
             lights: lights.collect(),
         }
@@ -164,22 +170,22 @@ impl Scene {
 }
 
 impl Surface {
-    /// Takes a surface to `bits` of precision.
-    pub fn new(surface: &ir::Surface, bits: usize) -> Self {
-        let vec3 = |v: glam::DVec3| v.to_array().map(|x| Ball::exact(x, bits));
+    /// Takes a surface as the IR has it.
+    pub fn new(surface: &ir::Surface, arithmetic: Arithmetic) -> Self {
+        let vec3 = |v: glam::DVec3| arithmetic.vec3(v.to_array());
         Self {
             ambient: vec3(surface.ambient),
             diffuse: vec3(surface.diffuse),
             specular: vec3(surface.specular),
             shininess: surface.shininess,
-            reflectance: Ball::exact(surface.reflectance, bits),
+            reflectance: arithmetic.number(surface.reflectance),
         }
     }
 }
 
 impl Quadric {
     /// Returns |p − c|² − r²: below 0 inside, 0 on the surface.
-    pub fn at(&self, p: &Vec3) -> Ball {
+    pub fn at(&self, p: &Vec3) -> Real {
         let offset = self.offset(p);
         &self.dot(&offset, &offset) - &(&self.radius * &self.radius)
     }
@@ -194,7 +200,7 @@ impl Quadric {
     }
 
     /// Returns the dot product over the equation's axes.
-    pub fn dot(&self, a: &Vec3, b: &Vec3) -> Ball {
+    pub fn dot(&self, a: &Vec3, b: &Vec3) -> Real {
         let products = self.axes.iter().map(|&axis| &a[axis] * &b[axis]);
         products.reduce(|sum, product| &sum + &product).expect("a quadric has axes")
     }
@@ -202,7 +208,7 @@ impl Quadric {
 
 impl Cap {
     /// Turns a length along y so that it is above 0 into the cylinder.
-    pub fn inward(&self, along_y: &Ball) -> Ball {
+    pub fn inward(&self, along_y: &Real) -> Real {
         if self.normal < 0.0 { along_y.clone() } else { -along_y }
     }
 }

@@ -8,8 +8,8 @@ use std::cmp::Ordering;
 
 use crate::exact::Part;
 use crate::exact::attempt::{Attempt, Decided, Undecided};
-use crate::exact::ball::Ball;
 use crate::exact::intersect::{Hit, Ray};
+use crate::exact::real::Real;
 use crate::exact::scene::{Equation, Light, Surface};
 use crate::exact::tie::Tie;
 use crate::exact::vec3::{Vec3, add, divide, dot, negate, scale, sub};
@@ -29,7 +29,7 @@ impl Attempt<'_> {
     pub fn radiance(&self, ray: &Ray, level: u32) -> Decided<Vec3> {
         let color = match self.intersect(ray)? {
             None => self.scene.background.clone(),
-            Some(_) if level > self.settings.max_level => [0.0; 3].map(|zero| self.ball(zero)),
+            Some(_) if level > self.settings.max_level => self.vec3([0.0; 3]),
             Some(hit) => self.shade(ray, hit, level)?,
         };
         Ok(color.map(|channel| channel.clamp01()))
@@ -37,15 +37,15 @@ impl Attempt<'_> {
 
     fn shade(&self, ray: &Ray, hit: Hit, level: u32) -> Decided<Vec3> {
         let body = self.bodies[hit.body_idx];
-        let surface = Surface::new(&self.surfaces[body.surface_idx()], self.scene.bits);
+        let surface = Surface::new(&self.surfaces[body.surface_idx()], self.scene.arithmetic);
         let mut p = ray.at(&hit.t);
         let mut n = match hit.cap {
             Some(cap) => {
                 p[1] = cap.y;
-                [0.0, cap.normal, 0.0].map(|component| self.ball(component))
+                self.vec3([0.0, cap.normal, 0.0])
             }
             None => {
-                let quadric = body.quadric(self.scene.bits);
+                let quadric = body.quadric(self.scene.arithmetic);
                 divide(&quadric.offset(&p), &quadric.radius)
             }
         };
@@ -63,7 +63,7 @@ impl Attempt<'_> {
 
     /// Part A: c = Σ Cl · Cd · max(0, n·L).
     fn shade_part_a(&self, surface: &Surface, p: &Vec3, n: &Vec3) -> Decided<Vec3> {
-        let mut color = [0.0; 3].map(|zero| self.ball(zero));
+        let mut color = self.vec3([0.0; 3]);
         for light in &self.scene.lights {
             let to_light = sub(&light.position, p);
             let square = dot(&to_light, &to_light);
@@ -97,7 +97,7 @@ impl Attempt<'_> {
             let reflected = Ray::new(p.clone(), sub(&ray.dir, &turned), on.clone());
             let radiance = match self.radiance(&reflected, level + 1) {
                 Ok(radiance) => radiance,
-                Err(Undecided) => [0.0; 3].map(|_: f64| self.ball(1.0).or_zero()),
+                Err(Undecided) => [0.0; 3].map(|_: f64| self.number(1.0).or_zero()),
             };
             color = add(&color, &scale(&surface.reflectance, &radiance));
         }
@@ -124,8 +124,8 @@ impl Attempt<'_> {
         let to_light = sub(&light.position, p);
         let distance = dot(&to_light, &to_light).sqrt();
         let n_dot_l = &dot(n, &to_light) / &distance;
-        let highlight = if surface.specular.iter().all(Ball::is_zero) {
-            self.ball(0.0)
+        let highlight = if surface.specular.iter().all(Real::is_zero) {
+            self.number(0.0)
         } else {
             let l_plus_v = add(&divide(&to_light, &distance), v);
             let n_dot_h = &dot(n, &l_plus_v) / &dot(&l_plus_v, &l_plus_v).sqrt();

@@ -80,6 +80,12 @@ impl Ties {
         self.0.iter().sum()
     }
 
+    /// Returns these and others.
+    #[must_use]
+    pub(super) fn plus(&self, others: &Self) -> Self {
+        Self(std::array::from_fn(|k| self.0[k] + others.0[k]))
+    }
+
     /// Returns those of one of these kinds alone.
     #[must_use]
     pub fn only(&self, kinds: &[Tie]) -> Self {

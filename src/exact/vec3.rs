@@ -1,9 +1,9 @@
-//! Points and directions of balls.
+//! Points and directions of the renderer's numbers.
 
-use crate::exact::ball::Ball;
+use crate::exact::real::Real;
 
 /// A point or a direction.
-pub type Vec3 = [Ball; 3];
+pub type Vec3 = [Real; 3];
 
 pub fn sub(a: &Vec3, b: &Vec3) -> Vec3 {
     [&a[0] - &b[0], &a[1] - &b[1], &a[2] - &b[2]]
@@ -13,15 +13,15 @@ pub fn add(a: &Vec3, b: &Vec3) -> Vec3 {
     [&a[0] + &b[0], &a[1] + &b[1], &a[2] + &b[2]]
 }
 
-pub fn scale(s: &Ball, a: &Vec3) -> Vec3 {
+pub fn scale(s: &Real, a: &Vec3) -> Vec3 {
     [s * &a[0], s * &a[1], s * &a[2]]
 }
 
-pub fn divide(a: &Vec3, s: &Ball) -> Vec3 {
+pub fn divide(a: &Vec3, s: &Real) -> Vec3 {
     [&a[0] / s, &a[1] / s, &a[2] / s]
 }
 
-pub fn dot(a: &Vec3, b: &Vec3) -> Ball {
+pub fn dot(a: &Vec3, b: &Vec3) -> Real {
     &(&(&a[0] * &b[0]) + &(&a[1] * &b[1])) + &(&a[2] * &b[2])
 }
 

@@ -67,6 +67,18 @@ impl Ball {
         Self::exact(value, self.mid.precision())
     }
 
+    /// Returns how many words the digits of the midpoint fill.
+    #[must_use]
+    pub fn n_words(&self) -> usize {
+        self.mid.repr().significand().as_sign_words().1.len()
+    }
+
+    /// Returns the precision that it is computed with.
+    #[must_use]
+    pub fn bits(&self) -> usize {
+        self.mid.precision()
+    }
+
     /// Returns the same number at another precision.
     #[must_use]
     pub fn at_precision(&self, bits: usize) -> Self {

@@ -160,8 +160,13 @@ impl Ball {
     /// Returns the tangent of half an angle given in degrees: tan(`degrees` · π / 360), for 0 < `degrees` < 180.
     #[must_use]
     pub fn tan_half_degrees(degrees: f64, bits: usize) -> Self {
-        if degrees == 90.0 {
+        let root_of_3 = || Self::exact(3.0, bits).sqrt();
+        if degrees == 60.0 {
+            return &root_of_3() / &Self::exact(3.0, bits);
+        } else if degrees == 90.0 {
             return Self::exact(1.0, bits);
+        } else if degrees == 120.0 {
+            return root_of_3();
         }
         let finer = bits + TANGENT_GUARD_BITS;
         let x = &(&Self::exact(degrees, finer) * &Self::pi(finer)) / &Self::exact(360.0, finer);
