@@ -123,7 +123,11 @@ impl Mag {
 
 #[cfg(test)]
 mod tests {
+    use dashu_float::FBig;
+    use dashu_float::round::mode::HalfEven;
+
     use super::*;
+    use crate::testing::Stream;
 
     #[test]
     fn bounds_keep_their_direction() {
@@ -145,5 +149,61 @@ mod tests {
         assert_eq!(tiny.minus_down(Mag::ZERO), tiny);
         assert_eq!(huge.to_f64_up(), f64::INFINITY);
         assert_eq!(tiny.to_f64_up(), f64::MIN_POSITIVE);
+    }
+
+    /// Returns the size itself, to compare with.
+    fn exactly(mag: Mag) -> FBig<HalfEven, 2> {
+        let number = |x: f64| FBig::<HalfEven, 2>::try_from(x).expect("finite").with_precision(400).value();
+        number(mag.mantissa) * number(libm::exp2(mag.exponent as f64))
+    }
+
+    /// Asserts that a bound lies on its side of `exact`, and within some roundings of it.
+    fn assert_bounds(what: &str, bound: Mag, exact: &FBig<HalfEven, 2>, is_upper: bool) {
+        let bound = exactly(bound);
+        let (low, high) = if is_upper { (exact.clone(), bound) } else { (bound, exact.clone()) };
+        assert!(low <= high, "{what}: {low} above {high}");
+        let spare = FBig::try_from(1.0 - 128.0 * f64::EPSILON).expect("finite").with_precision(400).value();
+        assert!(high * spare <= low, "{what}: far off");
+    }
+
+    #[test]
+    fn every_operation_rounds_to_its_side() {
+        let mut stream = Stream::new(53);
+        for _ in 0..2000 {
+            let [a, b] = [(); 2].map(|()| Mag::new(stream.between(0.1, 8.0), stream.below(200) as i64 - 100));
+            let (exact_a, exact_b) = (exactly(a), exactly(b));
+            assert_bounds("sum", a.plus(b), &(exact_a.clone() + exact_b.clone()), true);
+            assert_bounds("product", a.times(b), &(exact_a.clone() * exact_b.clone()), true);
+            assert_bounds("quotient", a.over(b), &(exact_a.clone() / exact_b.clone()), true);
+            assert_bounds("root", a.square_root(), &exact_a.sqrt(), true);
+            assert_eq!(a.shifted(7).shifted(-7), a);
+            let above = Mag::power_of_two(a.exponent_above());
+            assert!(exact_a < exactly(above) && exactly(above.shifted(-1)) <= exact_a);
+            assert!(a.to_f64_up() >= a.mantissa * libm::exp2(a.exponent as f64));
+            let [larger, smaller] = if exact_a > exact_b { [a, b] } else { [b, a] };
+            let difference = exactly(larger) - exactly(smaller);
+            let least = larger.minus_down(smaller);
+            assert!(exactly(least) <= difference && smaller.minus_down(larger).is_zero());
+            if smaller.exponent + 2 < larger.exponent {
+                assert_bounds("difference", least, &difference, false);
+                assert!(smaller.is_below(larger) && !larger.is_below(smaller));
+            }
+        }
+    }
+
+    #[test]
+    fn nothing_and_the_infinite_are_sizes() {
+        let (zero, one) = (Mag::ZERO, Mag::power_of_two(0));
+        assert_eq!((zero.plus(one), one.plus(zero), zero.times(one), zero.over(one)), (one, one, zero, zero));
+        assert_eq!((one.times(zero), zero.over(zero), zero.shifted(9)), (zero, zero, zero));
+        assert_eq!((one.over(zero), Mag::INFINITE.shifted(-9)), (Mag::INFINITE, Mag::INFINITE));
+        assert!(zero.minus_down(one).is_zero() && one.minus_down(Mag::INFINITE).is_zero());
+        assert!(one.plus(Mag::INFINITE).is_infinite() && !one.is_infinite());
+        assert_eq!((zero.to_f64_up(), one.to_f64_up(), Mag::INFINITE.to_f64_up()), (0.0, 1.0, f64::INFINITY));
+        for exponent in [-1023, -1022, -1021, 1022, 1023] {
+            let number = Mag::power_of_two(exponent).to_f64_up();
+            assert!(number >= libm::exp2(exponent as f64), "2^{exponent} became {number:e}");
+            assert!(exponent.abs() > 1021 || number == libm::exp2(exponent as f64));
+        }
     }
 }

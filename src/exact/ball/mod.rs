@@ -163,8 +163,9 @@ impl Ball {
     /// Returns a ball of all that lies between the number and 0.
     #[must_use]
     pub fn or_zero(&self) -> Self {
+        // From the middle m/2 the farthest are 0 and m ± r, which are |m|/2 + r away.
         let half = self * &self.like(0.5);
-        Self { radius: half.radius.plus(magnitude(&half.mid).1), ..half }
+        Self { radius: half.radius.shifted(1).plus(magnitude(&half.mid).1), ..half }
     }
 
     /// Returns the square.

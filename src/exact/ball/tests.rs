@@ -1,5 +1,7 @@
 //! Balls hold the truth: what the same formula gives in far more bits, and what others say.
 
+mod ends;
+
 use super::*;
 use crate::testing::Stream;
 
