@@ -1,5 +1,7 @@
 //! Holds the bounds of the balls against arbitrary precision.
 
+mod ends;
+
 use dashu_float::FBig;
 use dashu_float::round::mode::HalfEven;
 
@@ -107,9 +109,11 @@ fn powers_lie_within_their_bounds() {
 fn wide_balls_keep_their_powers() {
     for (value, error, exponent) in [(0.5, 0.4, 3.5), (0.01, 0.02, 0.5), (0.9, 1e-3, 5000.0), (1e-9, 1.0, 7.0)] {
         let power = Ball64::new(value, error).pow(exponent);
+        let fine = Ball106::rounded(DoubleDouble::from(value), error / value).pow(exponent);
         for end in [(value - error).max(0.0), value, value + error] {
             let exact = if end == 0.0 { big(0.0) } else { (big(end).ln() * big(exponent)).exp() };
-            Pair { ball: power, exact }.check("wide pow", |b| big(b.value()));
+            Pair { ball: power, exact: exact.clone() }.check("wide pow", |b| big(b.value()));
+            Pair { ball: fine, exact }.check("wide pow", |b| big_double_double(b.middle()));
         }
     }
 }
@@ -173,13 +177,21 @@ fn the_power_of_a_point_survives_a_large_sphere() {
     Pair { ball: power, exact }.check("power", |b| big(b.value()));
 }
 
+fn zeros_stay_exact<R: Real>() {
+    let zero = R::exact(0.0);
+    let third = R::exact(1.0) / R::exact(3.0);
+    for nothing in [zero * third, third * zero, zero / third, (zero * third + zero / third).sqrt()] {
+        assert_eq!(nothing.sign(), Sign::Zero);
+    }
+    assert_eq!((third - third).sign(), Sign::Unknown);
+    assert_eq!((third * (third - third)).sign(), Sign::Unknown);
+    assert_eq!(((third - third) / third).sign(), Sign::Unknown);
+}
+
 #[test]
 fn exact_zeros_stay_exact() {
-    let zero = Ball64::exact(0.0);
-    let third = Ball64::exact(1.0) / Ball64::exact(3.0);
-    assert_eq!((zero * third).sign(), Sign::Zero);
-    assert_eq!((zero * third + zero / third).sqrt().sign(), Sign::Zero);
-    assert_eq!((third - third).sign(), Sign::Unknown);
+    zeros_stay_exact::<Ball64>();
+    zeros_stay_exact::<Ball106>();
 }
 
 #[test]
