@@ -174,7 +174,8 @@ impl Real for Ball64 {
 
     #[inline]
     fn clamp_unit(self) -> Self {
-        if self.value - 2.0 * self.error >= 1.0 {
+        // The difference of 1 and a small error is rounded to 1.
+        if self.value - 2.0 * self.error >= 1.0 + f64::EPSILON {
             Self::exact(1.0)
         } else if self.value + 2.0 * self.error <= 0.0 {
             Self::exact(0.0)
