@@ -143,6 +143,9 @@ pub(super) struct Mirror {
     pub equation: f32,
 }
 
+/// Of a ray that weighs more than some levels it is not asked whether a byte is settled.
+const MAX_SETTLED_WEIGHT: f32 = 1.0 / 64.0;
+
 /// Returns the rays that leave a packet of hits on a mirror, and those whose colour can still change a byte.
 ///
 /// `local`: the colour of the hits by themselves. `rays`: those that met the mirror.
@@ -153,8 +156,9 @@ pub(super) fn reflect<L: SingleLanes>(
     local: [L; 3],
     rays: &Rays<L>,
 ) -> (Rays<L>, L::Mask) {
-    // The normal's length is off by a rounding of the point: it is made 1, so that directions stay of unit length.
-    let per_length = L::same(1.0) / dot(at.normal, at.normal).sqrt();
+    // The normal's length is off by a rounding of the point: it is made 1, so that directions stay of unit length. Its
+    // square is so close to 1 that 1/√x is 3/2 − x/2.
+    let per_length = L::same(1.5) - dot(at.normal, at.normal) * L::same(0.5);
     let normal = times(at.normal, per_length);
     let twice = dot(normal, at.view) * L::same(2.0);
     let dir = [normal[0] * twice - at.view[0], normal[1] * twice - at.view[1], normal[2] * twice - at.view[2]];
@@ -168,8 +172,11 @@ pub(super) fn reflect<L: SingleLanes>(
     let path =
         Reflected { origin: at.point, dir, leaving: L::same(mirror.leaving), equation: L::same(mirror.equation) };
     let reflected = Rays { path, sum, ceiling, weight, pixel: rays.pixel };
-    // A first channel that may still change is enough.
-    let mut is_settled = is_channel_settled(&reflected, 0);
+    // A heavy ray settles next to nothing, and a first channel that may still change is enough.
+    let mut is_settled = weight.lt(L::same(MAX_SETTLED_WEIGHT));
+    if is_settled.any() {
+        is_settled = is_settled & is_channel_settled(&reflected, 0);
+    }
     if is_settled.any() {
         is_settled = is_settled & is_channel_settled(&reflected, 1) & is_channel_settled(&reflected, 2);
     }
