@@ -2,7 +2,8 @@
 //! machine has for it.
 //!
 //! [`Numbers`] has the operations of IEEE 754 alone, each rounded once: no fused multiply-add, no approximate reciprocal. A
-//! computation written over it therefore gives the same bits on every backend; `scalar` is the specification. A
+//! computation written over it therefore gives the same bits on every backend; `scalar` is the specification. [`Lanes`]
+//! adds both, for computations whose results are relied on only as far as a bound on their error allows. A
 //! computation is a [`Job`]; [`Backend::run`] instantiates it for the lanes of a backend, inside a function that may use
 //! the instructions of that backend.
 //!
@@ -122,9 +123,22 @@ pub trait Numbers:
 }
 
 /// Some binary64 numbers.
+///
+/// What is added here to the operations of [`Numbers`] differs from backend to backend within what is said of it. It is
+/// for what is held against a bound on its error: whether a result can be relied on may depend on the machine, a result
+/// that is relied on not.
 pub trait Lanes: Numbers<Element = f64> {
     /// The binary32 numbers of the same backend.
     type Single: SingleLanes;
+
+    /// Returns `self · factor + addend`, rounded once, or once after the product and once after the sum.
+    fn mul_add(self, factor: Self, addend: Self) -> Self;
+
+    /// Returns what the reciprocal is at most, and at least 0.999 times: of numbers from 2⁻¹⁰⁰⁰ to 2¹⁰⁰⁰.
+    fn reciprocal_bound(self) -> Self;
+
+    /// Returns what stands at these places of a table; they must be whole numbers from 0 to 15.
+    fn look_up(table: &[f64; 16], places: Self) -> Self;
 }
 
 /// Some binary32 numbers.

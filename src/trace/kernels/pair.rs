@@ -59,6 +59,21 @@ impl<L: Numbers> Neg for Pair<L> {
 
 impl<L: Lanes> Lanes for Pair<L> {
     type Single = L::Single;
+
+    #[inline(always)]
+    fn mul_add(self, factor: Self, addend: Self) -> Self {
+        Self(self.0.mul_add(factor.0, addend.0), self.1.mul_add(factor.1, addend.1))
+    }
+
+    #[inline(always)]
+    fn reciprocal_bound(self) -> Self {
+        Self(self.0.reciprocal_bound(), self.1.reciprocal_bound())
+    }
+
+    #[inline(always)]
+    fn look_up(table: &[f64; 16], places: Self) -> Self {
+        Self(L::look_up(table, places.0), L::look_up(table, places.1))
+    }
 }
 
 impl<L: Numbers> Numbers for Pair<L> {

@@ -118,6 +118,51 @@ fn every_backend_gives_the_same_bits() {
     }
 }
 
+/// What differs from backend to backend, within what is said of it.
+#[derive(Clone, Copy)]
+struct EveryBoundedOperation<'a> {
+    a: &'a [f64; 16],
+    b: &'a [f64; 16],
+    c: &'a [f64; 16],
+}
+
+impl Job for EveryBoundedOperation<'_> {
+    type Output = [Vec<f64>; 3];
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> [Vec<f64>; 3] {
+        let (a, b, c) = (L::load(self.a), L::load(self.b), L::load(self.c));
+        let places = (a.abs() * L::splat(1e6)).min(L::splat(15.0)).floor();
+        [a.mul_add(b, c), c.abs().reciprocal_bound(), L::look_up(self.b, places)].map(|result| {
+            let mut lanes = [0.0; 16];
+            result.store(&mut lanes);
+            lanes[..L::N].to_vec()
+        })
+    }
+}
+
+#[test]
+fn every_backend_keeps_its_bounds() {
+    let mut stream = Stream::new(13);
+    for _ in 0..20_000 {
+        let mut any = || libm::exp2(stream.between(-20.0, 20.0)) * stream.between(-1.0, 1.0);
+        let [a, b, c] = [(); 3].map(|()| [(); 16].map(|()| any()));
+        let job = EveryBoundedOperation { a: &a, b: &b, c: &c };
+        for backend in Backend::ALL.into_iter().filter(|backend| backend.is_available()) {
+            for [sums, reciprocals, found] in [backend.run(job), backend.run_twofold(job)] {
+                for i in 0..sums.len() {
+                    let name = backend.name();
+                    let rounded = [a[i] * b[i] + c[i], libm::fma(a[i], b[i], c[i])];
+                    assert!(rounded.contains(&sums[i]), "{name}: {} · {} + {} = {}", a[i], b[i], c[i], sums[i]);
+                    let excess = libm::fma(reciprocals[i], c[i].abs(), -1.0);
+                    assert!((0.0..1e-3).contains(&excess), "{name}: 1/{} ≤ {}", c[i].abs(), reciprocals[i]);
+                    assert_eq!(found[i], b[(a[i].abs() * 1e6).min(15.0) as usize], "{name}");
+                }
+            }
+        }
+    }
+}
+
 #[test]
 fn a_pair_is_its_lanes_side_by_side() {
     type Sixteen = pair::Pair<scalar::Lanes8>;

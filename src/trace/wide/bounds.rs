@@ -93,6 +93,8 @@ pub(super) struct MirroredSphere {
     /// The numbers of its equation and of its face.
     pub equation: f64,
     pub face: u32,
+    /// `face`, among lanes.
+    pub face_number: f64,
 }
 
 /// What a face is.
@@ -299,7 +301,7 @@ impl Bounds {
         Some(Self {
             groups,
             owners: owners(&faces),
-            cluster: Cluster::new(plan, &mirrored),
+            cluster: Cluster::new(plan, &faces, &mirrored),
             mirrored,
             eye,
             eye_roundoff: eye.roundoff,
@@ -345,6 +347,7 @@ impl MirroredSphere {
             is_shell: face.per_radius < 0.0,
             equation: f64::from(face.equation),
             face: number,
+            face_number: f64::from(number),
         }
     }
 }

@@ -3,19 +3,23 @@
 //! # Which sphere is met first
 //! Where two balls are apart, so are the parts of a ray inside of each, and the one whose middle, at b = m·d, comes first is
 //! met first: no root is needed to compare them. Balls that touch may overlap by a rounding. Then their common part lies
-//! within a circle of radius ρ; a ray that sure hits one of them runs through it for at least 2g·r, more than the 2ρ that it
-//! can share with the other, since ρ is at most g·r/2. If the middle of one came first and its beginning did not, the other
-//! would hold all of its part, which is too long for that.
+//! within a circle of radius ρ, at most g·r/4, so that a ray has at most 2ρ in both.
 //!
-//! So the middles of two sure hits are at least g·r apart, and computed ones are in order if each is off by less than a
-//! quarter of that.
+//! Let the computed middle of W come first among all balls that the ray may meet, and W be a sure hit: the ray has at least
+//! 2g·r in it. Another ball that the ray meets does not hold all of W's part, which is too long. If W's part holds all of
+//! its part, W is met first. Otherwise the middles are at least g·r − 2ρ ≥ g·r/2 apart, and in the order in which the parts
+//! begin; computed ones are in the same order if each is off by less than a quarter of that. So nothing needs to be known
+//! of the other balls but which of them the ray surely misses.
+//!
+//! A ray leaves a ball of the cluster at a cosine above g, so that this ball's own middle is g·r behind the origin: it is
+//! among those that are surely missed.
 //!
 //! # Errors
 //! No origin of a reflected ray is farther than S from the centre of a sphere that it may meet, so that |m| ≤ S in the bounds
 //! of `mirror`.
 
 use crate::plan::{Plan, Primitive, Scene};
-use crate::trace::wide::bounds::{MIN_COSINE, MirroredSphere, U};
+use crate::trace::wide::bounds::{Face, MIN_COSINE, MirroredSphere, U};
 
 /// More objects are not compared pair by pair.
 const MAX_OBJECTS: usize = 64;
@@ -30,15 +34,56 @@ pub(super) struct Cluster {
     pub span: f64,
     /// 16u times the square of the largest radius.
     pub radius_rounding: f64,
-    /// A quarter of how far the middles of two sure hits are apart.
+    /// D of a sure hit is larger: g²r² of the largest.
+    pub least: f64,
+    /// A quarter of how far the middles of a sure hit and of what follows are apart.
     pub gap: f64,
     /// 8u·(|P|₁ + t) is at most this where a ray meets one of the spheres.
     pub hit_rounding: f64,
+    /// What the spheres are, if all have one surface and few numbers are needed to name them.
+    pub table: Option<Table>,
+}
+
+/// What spheres of one surface are, by the numbers of their faces.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Table {
+    pub center: [[f64; N_PLACES]; 3],
+    pub radius: [f64; N_PLACES],
+    pub per_radius: [f64; N_PLACES],
+    pub equation: [f64; N_PLACES],
+    /// The number of one of the faces.
+    pub face: usize,
+}
+
+/// How many faces a table has room for.
+const N_PLACES: usize = 16;
+
+impl Table {
+    /// Makes the table of some spheres, given all faces; `None` if they differ in their surfaces, or there is no room.
+    fn new(faces: &[Face], spheres: &[u32]) -> Option<Self> {
+        let face = *spheres.first()? as usize;
+        let group = faces[face].group?;
+        let zeros = [0.0; N_PLACES];
+        let mut table = Self { center: [zeros; 3], radius: zeros, per_radius: zeros, equation: zeros, face };
+        for place in spheres.iter().map(|&i| i as usize) {
+            let face = &faces[place];
+            if place >= N_PLACES || face.group != Some(group) {
+                return None;
+            }
+            for k in 0..3 {
+                table.center[k][place] = face.center[k];
+            }
+            table.radius[place] = face.radius;
+            table.per_radius[place] = face.per_radius;
+            table.equation[place] = f64::from(face.equation);
+        }
+        Some(table)
+    }
 }
 
 impl Cluster {
     /// Tells whether what mirrors of a plan show is a cluster; cylinders may lie between.
-    pub fn new(plan: &Plan<'_>, spheres: &[MirroredSphere]) -> Option<Self> {
+    pub fn new(plan: &Plan<'_>, faces: &[Face], spheres: &[MirroredSphere]) -> Option<Self> {
         let scene = &plan.scene;
         if scene.n_objects() > MAX_OBJECTS {
             return None;
@@ -47,7 +92,7 @@ impl Cluster {
         let radius = |sphere: &MirroredSphere| sphere.radius_squared.sqrt();
         let min_radius = shown.iter().map(|sphere| radius(sphere)).fold(f64::INFINITY, f64::min);
         let max_radius = shown.iter().map(|sphere| radius(sphere)).fold(0.0, f64::max);
-        let overlap = 0.5 * MIN_COSINE * min_radius;
+        let overlap = 0.25 * MIN_COSINE * min_radius;
         let are_apart =
             (1..shown.len()).all(|i| shown[..i].iter().all(|other| overlap_radius(shown[i], other) <= overlap));
         if !are_apart || shown.iter().any(|sphere| sphere.is_shell) {
@@ -59,8 +104,10 @@ impl Cluster {
         let cluster = Self {
             span,
             radius_rounding: 16.0 * U * max_radius * max_radius,
-            gap: 0.25 * MIN_COSINE * min_radius,
+            least: shown.iter().map(|sphere| sphere.least).fold(0.0, f64::max),
+            gap: 0.125 * MIN_COSINE * min_radius,
             hit_rounding: 8.0 * U * 1.01 * (farthest_center + 2.0 * max_radius + span),
+            table: Table::new(faces, plan.mirrored().spheres).filter(|_| plan.mirrored().cylinders.is_empty()),
         };
         (span <= MAX_SPAN * min_radius).then_some(cluster)
     }

@@ -110,7 +110,7 @@ pub(super) fn meet_sphere<L: Lanes>(
     sphere: &EyeSphere,
     row: &RowSphere,
 ) {
-    let b = rays.dx * L::splat(sphere.center[0]) + L::splat(row.along);
+    let b = rays.dx.mul_add(L::splat(sphere.center[0]), L::splat(row.along));
     let b_squared = b * b;
     if sphere.is_shell {
         let hit = b_squared.gt(rays.a * L::splat(sphere.power_high));
@@ -126,7 +126,7 @@ pub(super) fn meet_sphere<L: Lanes>(
     let hit = maybe & b_squared.gt(rays.a * L::splat(sphere.power_high));
     nearest.doubt = nearest.doubt | (maybe & !hit);
     let discriminant =
-        if sphere.is_far { far_discriminant(rays, sphere) } else { b_squared - rays.a * L::splat(sphere.power) };
+        if sphere.is_far { far_discriminant(rays, sphere) } else { rays.a.mul_add(L::splat(-sphere.power), b_squared) };
     let t = L::splat(sphere.power) / (b + discriminant.sqrt());
     nearest.consider(bounds, hit, t, L::splat(sphere.margin), sphere.face);
 }

@@ -19,7 +19,7 @@
 
 use crate::trace::kernels::{Lanes, Mask};
 use crate::trace::wide::bounds::{Bounds, Face, FaceKind, MIN_CAP_COSINE, MIN_COSINE, MirroredSphere, Terms, U};
-use crate::trace::wide::cluster::Cluster;
+use crate::trace::wide::cluster::{Cluster, Table};
 use crate::trace::wide::eye::Nearest;
 use crate::trace::wide::queue::{Paths, Rays};
 use crate::trace::wide::shade::{Colors, Points, dot, splat_each};
@@ -42,20 +42,20 @@ impl<L: Lanes> Reach<L> {
         let turned = rays.dir_error + L::splat(8.0 * U);
         Self {
             along: turned * L::splat(0.5 / size),
-            along_least: rays.origin_error * L::splat(1.01) + turned * L::splat(0.5 * size),
-            square: turned * L::splat(8.0) + rays.origin_error * L::splat(3.0 / size),
+            along_least: rays.origin_error.mul_add(L::splat(1.01), turned * L::splat(0.5 * size)),
+            square: turned.mul_add(L::splat(8.0), rays.origin_error * L::splat(3.0 / size)),
             square_least: rays.origin_error * L::splat(3.0 * size),
         }
     }
 
     #[inline(always)]
     fn along(&self, m_squared: L) -> L {
-        m_squared * self.along + self.along_least
+        m_squared.mul_add(self.along, self.along_least)
     }
 
     #[inline(always)]
     fn square(&self, m_squared: L, radius_squared: f64) -> L {
-        m_squared * self.square + (self.square_least + L::splat(16.0 * U * radius_squared))
+        m_squared.mul_add(self.square, self.square_least + L::splat(16.0 * U * radius_squared))
     }
 }
 
@@ -68,12 +68,12 @@ pub(super) fn nearest_hit<L: Lanes>(
     rays: &Rays<L>,
     active: L::Mask,
 ) -> Nearest<L> {
-    let mut nearest = Nearest::nothing();
-    if let Some(cluster) = &bounds.cluster {
-        meet_cluster(&mut nearest, cluster, &bounds.mirrored, spheres, rays, active, !cylinders.is_empty());
-        if cylinders.is_empty() {
-            return nearest;
-        }
+    let mut nearest = match &bounds.cluster {
+        None => Nearest::nothing(),
+        Some(cluster) => meet_cluster(cluster, &bounds.mirrored, spheres, rays, !cylinders.is_empty()),
+    };
+    if bounds.cluster.is_some() && cylinders.is_empty() {
+        return nearest;
     }
     let reach = Reach::new(bounds, rays);
     if bounds.cluster.is_none() {
@@ -90,25 +90,25 @@ pub(super) fn nearest_hit<L: Lanes>(
 
 /// Finds which of some spheres that are apart a packet meets first: that with the smallest b.
 ///
-/// `compares`: whether t is still to be compared.
+/// The sphere that a ray leaves is among those that it leaves behind. `compares`: whether t is still to be compared.
 #[inline(always)]
-fn meet_cluster<L: Lanes>(
-    nearest: &mut Nearest<L>,
+pub(super) fn meet_cluster<L: Lanes>(
     cluster: &Cluster,
     spheres: &[MirroredSphere],
     among: &[u32],
     rays: &Rays<L>,
-    active: L::Mask,
     compares: bool,
-) {
+) -> Nearest<L> {
     let (turned, span) = (rays.dir_error + L::splat(8.0 * U), cluster.span);
-    let off = rays.origin_error * L::splat(1.01) + turned * L::splat(span);
-    let slack = rays.origin_error * L::splat(6.06 * span)
-        + (turned * L::splat(8.0 * span * span) + L::splat(cluster.radius_rounding));
-    let (minus_off, minus_slack, twice_slack) = (-off, -slack, slack + slack);
-    let mut b_first = L::splat(f64::INFINITY);
-    let mut discriminant_first = L::splat(1.0);
-    let mut doubt = active & !off.lt(L::splat(cluster.gap));
+    let off = rays.origin_error.mul_add(L::splat(1.01), turned * L::splat(span));
+    let slack = turned.mul_add(
+        L::splat(8.0 * span * span),
+        rays.origin_error.mul_add(L::splat(6.06 * span), L::splat(cluster.radius_rounding)),
+    );
+    let (minus_off, minus_slack) = (-off, -slack);
+    let mut nearest = Nearest::nothing();
+    let mut b_first = nearest.t;
+    let mut discriminant_first = nearest.t;
     for &i in among {
         let sphere = &spheres[i as usize];
         let m: [L; 3] = [
@@ -117,27 +117,26 @@ fn meet_cluster<L: Lanes>(
             L::splat(sphere.center[2]) - rays.origin[2],
         ];
         let b = dot(m, rays.dir);
-        let power = dot(m, m) - L::splat(sphere.radius_squared);
-        let discriminant = b * b - power;
-        let is_other = active & !rays.leaving.eq(L::splat(sphere.equation));
-        let maybe = is_other & discriminant.ge(minus_slack) & b.ge(minus_off);
-        if !maybe.any() {
-            continue;
-        }
-        let hit = maybe & discriminant.gt(slack + L::splat(sphere.least)) & b.gt(off) & power.gt(twice_slack);
-        doubt = doubt | (maybe & !hit);
-        let first = hit & b.lt(b_first);
+        let power = m[0].mul_add(m[0], m[1].mul_add(m[1], m[2].mul_add(m[2], -L::splat(sphere.radius_squared))));
+        let discriminant = b.mul_add(b, -power);
+        let first = b.lt(b_first) & b.ge(minus_off) & discriminant.ge(minus_slack);
         b_first = L::select(first, b, b_first);
         discriminant_first = L::select(first, discriminant, discriminant_first);
-        nearest.face = L::select(first, L::splat(f64::from(sphere.face)), nearest.face);
+        nearest.face = L::select(first, L::splat(sphere.face_number), nearest.face);
     }
+    let is_met = b_first.lt(nearest.t);
     let root = discriminant_first.sqrt();
-    nearest.t = b_first - root;
-    nearest.doubt = doubt;
+    let t = b_first - root;
+    // The power is b² − D.
+    let power = t * (b_first + root);
+    let is_sure = discriminant_first.gt(slack + L::splat(cluster.least)) & b_first.gt(off) & power.gt(slack + slack);
+    nearest.doubt = (is_met & !is_sure) | !off.lt(L::splat(cluster.gap));
+    nearest.t = L::select(is_met, t, nearest.t);
     if compares {
         let margin = off + slack / root;
         nearest.margin = margin + margin;
     }
+    nearest
 }
 
 #[inline(always)]
@@ -158,7 +157,7 @@ fn meet_sphere<L: Lanes>(
     let b = dot(m, rays.dir);
     let m_squared = dot(m, m);
     let power = m_squared - L::splat(squared);
-    let discriminant = b * b - power;
+    let discriminant = b.mul_add(b, -power);
     let is_other = !rays.leaving.eq(L::splat(sphere.equation));
     let slack = reach.square(m_squared, squared);
     let least = slack + L::splat(sphere.least);
@@ -290,6 +289,22 @@ impl<L: Lanes> Met<L> {
         }
     }
 
+    /// Makes each lane meet the sphere of its face.
+    #[inline(always)]
+    pub fn of_table(table: &Table, face: L) -> Self {
+        Self {
+            kind: FaceKind::Sphere,
+            center: [
+                L::look_up(&table.center[0], face),
+                L::look_up(&table.center[1], face),
+                L::look_up(&table.center[2], face),
+            ],
+            radius: L::look_up(&table.radius, face),
+            per_radius: L::look_up(&table.per_radius, face),
+            equation: L::look_up(&table.equation, face),
+        }
+    }
+
     /// Makes the lanes of the mask meet another sphere.
     #[inline(always)]
     pub fn but(self, mask: L::Mask, face: &Face) -> Self {
@@ -319,8 +334,11 @@ pub(super) fn points<L: Lanes>(
     lanes: L::Mask,
 ) -> (Points<L>, L::Mask) {
     let zero = L::splat(0.0);
-    let [x, y, z] =
-        [rays.origin[0] + rays.dir[0] * t, rays.origin[1] + rays.dir[1] * t, rays.origin[2] + rays.dir[2] * t];
+    let [x, y, z] = [
+        t.mul_add(rays.dir[0], rays.origin[0]),
+        t.mul_add(rays.dir[1], rays.origin[1]),
+        t.mul_add(rays.dir[2], rays.origin[2]),
+    ];
     let per_radius = met.per_radius;
     let nx = (x - met.center[0]) * per_radius;
     let nz = (z - met.center[2]) * per_radius;
@@ -335,18 +353,20 @@ pub(super) fn points<L: Lanes>(
         (Some(cluster), FaceKind::Sphere) => L::splat(cluster.hit_rounding),
         _ => (x.abs() + y.abs() + z.abs() + t) * L::splat(8.0 * U),
     };
-    let passes_within = rays.origin_error + t * rays.dir_error + rounding;
+    let passes_within = t.mul_add(rays.dir_error, rays.origin_error + rounding);
+    let per_cosine = cosine.reciprocal_bound();
     let is_curved = matches!(met.kind, FaceKind::Sphere | FaceKind::Wall);
     let (point_error, normal_error, length_error, vague) = if is_curved {
         // | |n|² − 1 | / 2, with what the normal's own roundings hide.
-        let length_error = (dot(normal, normal) - L::splat(1.0)).abs() * L::splat(0.5) + L::splat(8.0 * U);
-        let off_surface = length_error * met.radius;
-        let point_error = (passes_within + off_surface) / cosine * L::splat(1.06);
-        let normal_error = point_error * per_radius.abs() + L::splat(4.0 * U);
+        let [nx, ny, nz] = normal;
+        let excess = nx.mul_add(nx, ny.mul_add(ny, nz.mul_add(nz, -L::splat(1.0))));
+        let length_error = excess.abs().mul_add(L::splat(0.5), L::splat(8.0 * U));
+        let point_error = length_error.mul_add(met.radius, passes_within) * (per_cosine * L::splat(1.06));
+        let normal_error = point_error.mul_add(per_radius.abs(), L::splat(4.0 * U));
         let is_known = cosine.gt(L::splat(MIN_COSINE)) & normal_error.lt(cosine * L::splat(1.0 / 64.0));
         (point_error, normal_error, length_error, lanes & !is_known)
     } else {
-        let point_error = passes_within / cosine * L::splat(1.01);
+        let point_error = passes_within * (per_cosine * L::splat(1.01));
         (point_error, zero, zero, lanes & !cosine.gt(L::splat(MIN_CAP_COSINE)))
     };
     let view = [-rays.dir[0], -rays.dir[1], -rays.dir[2]];
@@ -365,11 +385,14 @@ pub(super) fn points<L: Lanes>(
 #[inline(always)]
 pub(super) fn reflect<L: Lanes>(at: &Points<L>) -> Rays<L> {
     let twice = at.cosine + at.cosine;
-    let dir = [at.normal[0] * twice - at.view[0], at.normal[1] * twice - at.view[1], at.normal[2] * twice - at.view[2]];
-    let dir_error = at.dir_error * L::splat(1.001)
-        + at.normal_error * L::splat(2.05)
-        + at.length_error * L::splat(4.0)
-        + L::splat(16.0 * U);
+    let dir = [
+        at.normal[0].mul_add(twice, -at.view[0]),
+        at.normal[1].mul_add(twice, -at.view[1]),
+        at.normal[2].mul_add(twice, -at.view[2]),
+    ];
+    let of_length = at.length_error.mul_add(L::splat(4.0), L::splat(16.0 * U));
+    let of_normal = at.normal_error.mul_add(L::splat(2.05), of_length);
+    let dir_error = at.dir_error.mul_add(L::splat(1.001), of_normal);
     Rays { origin: at.point, dir, origin_error: at.point_error, dir_error, leaving: at.equation }
 }
 
@@ -378,9 +401,9 @@ pub(super) fn reflect<L: Lanes>(at: &Points<L>) -> Rays<L> {
 pub(super) fn go_on<L: Lanes>(terms: &Terms, local: &Colors<L>, paths: &Paths<L>) -> Paths<L> {
     let weight = paths.weight;
     let sum = [
-        paths.sum[0] + weight * local.color[0],
-        paths.sum[1] + weight * local.color[1],
-        paths.sum[2] + weight * local.color[2],
+        weight.mul_add(local.color[0], paths.sum[0]),
+        weight.mul_add(local.color[1], paths.sum[1]),
+        weight.mul_add(local.color[2], paths.sum[2]),
     ];
     let ceiling = [
         paths.ceiling[0].min(paths.sum[0] + weight),
@@ -391,7 +414,7 @@ pub(super) fn go_on<L: Lanes>(terms: &Terms, local: &Colors<L>, paths: &Paths<L>
         sum,
         ceiling,
         weight: weight * L::splat(terms.reflectance),
-        error: paths.error + weight * local.error,
+        error: weight.mul_add(local.error, paths.error),
         pixel: paths.pixel,
         level: paths.level + L::splat(1.0),
     }
@@ -406,9 +429,9 @@ pub(super) fn compose<L: Lanes>(paths: &Paths<L>, color: [L; 3], error: L) -> ([
     let mut channels = color;
     let mut largest = one;
     for k in 0..3 {
-        channels[k] = (paths.sum[k] + paths.weight * color[k].min(one).max(zero)).min(paths.ceiling[k]);
+        channels[k] = paths.weight.mul_add(color[k].min(one).max(zero), paths.sum[k]).min(paths.ceiling[k]);
         largest = largest.max(paths.sum[k] + paths.weight);
     }
     let rounding = largest * (paths.level + L::splat(2.0)) * L::splat(8.0 * U);
-    (channels, paths.error + paths.weight * error + rounding)
+    (channels, paths.weight.mul_add(error, paths.error + rounding))
 }

@@ -41,6 +41,7 @@ use crate::trace::kernels::{Backend, Job, Lanes, Mask};
 use crate::trace::pixel::Sampling;
 
 use self::bounds::{Bounds, Face};
+use self::cluster::{Cluster, Table};
 use self::crowd::{Around, Few};
 use self::eye::{EyeRays, Nearest, RowSphere};
 use self::fault::Fault;
@@ -75,6 +76,8 @@ pub(super) struct Wide {
     samples: u32,
     /// Which channels the paths of mirrored colours have.
     channels: Channels,
+    /// Whether all that mirrors show are spheres of a cluster, of one surface which is grey.
+    shows_grey_cluster: bool,
     /// What a test makes wrong.
     pub fault: Fault,
 }
@@ -140,8 +143,11 @@ impl Wide {
             (true, true) => Bounds::of_crowd(plan, dir_error, max_slope)?,
         };
         let are_equal = bounds.terms.iter().all(|terms| terms.reflectance == 0.0 || terms.is_grey());
+        let table = bounds.cluster.as_ref().and_then(|cluster| cluster.table.as_ref());
+        let is_grey = |table: &Table| bounds.terms[bounds.faces[table.face].surface].is_grey();
         Some(Self {
             backend,
+            shows_grey_cluster: are_equal && table.is_some_and(is_grey),
             bounds,
             channels: if are_equal { Channels::Equal } else { Channels::Three },
             is_crowd,
@@ -410,7 +416,7 @@ impl TileJob<'_> {
         let face = &self.bounds.faces[hit.face as usize];
         let terms = &self.wide.bounds.terms[face.surface];
         let at = self.points::<L>(face, packet, lanes);
-        let colors = self.local::<L>(face, false, &at);
+        let colors = self.local::<L, false>(face, false, &at);
         self.mark_slow::<L>(packet, lanes & colors.doubt);
         let sure = lanes & !colors.doubt;
         if terms.reflectance > 0.0 {
@@ -511,8 +517,8 @@ impl TileJob<'_> {
 
     /// Shades a packet of hits without their reflections, on one face or, if it is shared, on those of its group.
     #[inline(always)]
-    fn local<L: Lanes>(&mut self, face: &Face, is_shared: bool, at: &Points<L>) -> Colors<L> {
-        if self.wide.is_crowd {
+    fn local<L: Lanes, const GREY: bool>(&mut self, face: &Face, is_shared: bool, at: &Points<L>) -> Colors<L> {
+        if !GREY && self.wide.is_crowd {
             return self.local_in_crowd(face, at);
         }
         let bounds = &self.wide.bounds;
@@ -522,7 +528,7 @@ impl TileJob<'_> {
             self.scratch.occluders[slot] = Some(collect_occluders(bounds, self.plan, face, shared));
         }
         let Some(occluders) = &self.scratch.occluders[slot] else { unreachable!("it was just collected") };
-        let colors = shade::shade(&bounds.lights, &bounds.terms[face.surface], occluders, at);
+        let colors = shade::shade::<L, GREY>(&bounds.lights, &bounds.terms[face.surface], occluders, at);
         self.scratch.counts.shadow_rays += u64::from(colors.shadow_rays);
         colors
     }
@@ -537,7 +543,7 @@ impl TileJob<'_> {
             let zero = L::splat(0.0);
             return Colors { color: [zero; 3], error: zero, doubt: at.active, shadow_rays: 0 };
         }
-        let colors = shade::shade(&around.lights, terms, &around.occluders, at);
+        let colors = shade::shade::<L, false>(&around.lights, terms, &around.occluders, at);
         counts.shadow_rays += u64::from(colors.shadow_rays);
         colors
     }
@@ -557,6 +563,13 @@ impl TileJob<'_> {
     /// Follows a packet of rays.
     #[inline(always)]
     fn follow_packet<L: Lanes>(&mut self, packet: &Packet) {
+        if self.wide.shows_grey_cluster
+            && let Some(cluster) = &self.bounds.cluster
+            && let Some(table) = &cluster.table
+        {
+            self.follow_in_cluster::<L>(cluster, table, packet);
+            return;
+        }
         if !self.wide.is_crowd {
             let leaving = packet.common::<L>(Number::Leaving).and_then(|equation| self.bounds.owner(equation));
             let among = leaving.map_or_else(|| self.plan.mirrored(), |object| self.plan.mirrored_by(object));
@@ -579,20 +592,30 @@ impl TileJob<'_> {
         }
     }
 
+    /// Follows a packet of rays among spheres of one grey surface that form a cluster.
+    #[inline(always)]
+    fn follow_in_cluster<L: Lanes>(&mut self, cluster: &Cluster, table: &Table, packet: &Packet) {
+        let bounds = self.bounds;
+        let among = self.plan.mirrored().spheres;
+        self.scratch.counts.tests += among.len() as u64 * u64::from(packet.lanes::<L>().bits().count_ones());
+        let rays = packet.rays::<L>();
+        let nearest = mirror::meet_cluster(cluster, &bounds.mirrored, among, &rays, false);
+        let met = self.finish_missed(packet, &nearest);
+        if met.any() {
+            let hit = Met::of_table(table, nearest.face);
+            let (at, vague) = mirror::points::<L>(bounds, &hit, &rays, nearest.t, met);
+            self.mark_places::<L>(packet.get(Number::Pixel), vague);
+            self.shade_reflected::<L, true>(&bounds.faces[table.face], true, packet, &at);
+        }
+    }
+
     /// Follows a packet of rays to what it meets of the candidates.
     #[inline(always)]
     fn follow_among<L: Lanes>(&mut self, among: Candidates<'_>, packet: &Packet) {
         let (bounds, active) = (self.bounds, packet.lanes::<L>());
         self.scratch.counts.tests += among.len() as u64 * u64::from(active.bits().count_ones());
         let nearest = mirror::nearest_hit::<L>(bounds, among.spheres, among.cylinders, &packet.rays(), active);
-        self.mark_places::<L>(packet.get(Number::Pixel), active & nearest.doubt);
-        let sure = active & !nearest.doubt;
-        let met = sure & nearest.met();
-        let zero = L::splat(0.0);
-        self.finish::<L>(packet, shade::splat_each(self.plan.scene.background.to_array()), zero, sure & !met);
-        let beyond = met & packet.get::<L>(Number::Level).gt(L::splat(f64::from(self.plan.settings.max_level)));
-        self.finish::<L>(packet, [zero; 3], zero, beyond);
-        let met = met & !beyond;
+        let met = self.finish_missed(packet, &nearest);
         let mut faces = eye::LaneArray([0.0; eye::MAX_LANES]);
         nearest.face.store(&mut faces.0);
         let faces = &faces.0;
@@ -618,18 +641,39 @@ impl TileJob<'_> {
             }
             let (at, vague) = mirror::points::<L>(bounds, &hit, &packet.rays(), nearest.t, L::Mask::from_bits(lanes));
             self.mark_places::<L>(packet.get(Number::Pixel), vague);
-            self.shade_reflected::<L>(face, is_shared, packet, &at);
+            self.shade_reflected::<L, false>(face, is_shared, packet, &at);
         }
+    }
+
+    /// Settles the pixels of rays that meet nothing, or one mirror too many, and returns the lanes of the others.
+    #[inline(always)]
+    fn finish_missed<L: Lanes>(&mut self, packet: &Packet, nearest: &Nearest<L>) -> L::Mask {
+        let active = packet.lanes::<L>();
+        self.mark_places::<L>(packet.get(Number::Pixel), active & nearest.doubt);
+        let sure = active & !nearest.doubt;
+        let met = sure & nearest.met();
+        let zero = L::splat(0.0);
+        self.finish::<L>(packet, shade::splat_each(self.plan.scene.background.to_array()), zero, sure & !met);
+        let beyond = met & packet.get::<L>(Number::Level).gt(L::splat(f64::from(self.plan.settings.max_level)));
+        self.finish::<L>(packet, [zero; 3], zero, beyond);
+        met & !beyond
     }
 
     /// Shades the hits of reflected rays, and sends them on from mirrors.
     #[inline(always)]
-    fn shade_reflected<L: Lanes>(&mut self, face: &Face, is_shared: bool, packet: &Packet, at: &Points<L>) {
-        let colors = self.local(face, is_shared, at);
+    fn shade_reflected<L: Lanes, const GREY: bool>(
+        &mut self,
+        face: &Face,
+        is_shared: bool,
+        packet: &Packet,
+        at: &Points<L>,
+    ) {
+        let colors = self.local::<L, GREY>(face, is_shared, at);
         self.mark_places::<L>(packet.get(Number::Pixel), at.active & colors.doubt);
         let sure = at.active & !colors.doubt;
         if self.wide.bounds.terms[face.surface].reflectance > 0.0 {
-            self.send_on(face, at, &colors, &packet.paths(self.wide.channels), sure);
+            let channels = if GREY { Channels::Equal } else { self.wide.channels };
+            self.send_on(face, at, &colors, &packet.paths(channels), sure);
         } else {
             self.finish::<L>(packet, colors.color, colors.error, sure);
         }

@@ -67,7 +67,7 @@ pub(super) struct Colors<L: Lanes> {
 /// Returns a·b.
 #[inline(always)]
 pub(super) fn dot<L: Lanes>(a: [L; 3], b: [L; 3]) -> L {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    a[0].mul_add(b[0], a[1].mul_add(b[1], a[2] * b[2]))
 }
 
 /// Makes every lane the same vector or colour.
@@ -77,9 +77,11 @@ pub(super) fn splat_each<L: Lanes>([x, y, z]: [f64; 3]) -> [L; 3] {
 }
 
 /// Shades a packet of hits without their reflections.
+///
+/// `GREY`: whether the terms are grey, which makes one channel stand for all.
 #[inline(always)]
 #[allow(clippy::needless_range_loop, reason = "an adapter is not always inlined into a packet")]
-pub(super) fn shade<L: Lanes>(
+pub(super) fn shade<L: Lanes, const GREY: bool>(
     lights: &[WideLight],
     terms: &Terms,
     occluders: &LightOccluders,
@@ -104,7 +106,7 @@ pub(super) fn shade<L: Lanes>(
         ];
         let a = dot(w, w);
         let toward = -dot(at.normal, w);
-        let margin = normal_slack * (half * a + half) + point_slack;
+        let margin = normal_slack.mul_add(a.mul_add(half, half), point_slack);
         let faces = at.active & toward.gt(-margin);
         if !faces.any() {
             continue;
@@ -123,13 +125,10 @@ pub(super) fn shade<L: Lanes>(
         any_lit = any_lit | lit;
         let per_distance = one / distance;
         let n_dot_l = toward * per_distance;
-        let light_slack = at.point_error * L::splat(2.0) * per_distance + L::splat(8.0 * U);
-        let mut error = (at.normal_error + light_slack + L::splat(16.0 * U)) * L::splat(light_terms.max_diffuse);
-        let mut sum = [
-            n_dot_l * L::splat(light_terms.diffuse[0]),
-            n_dot_l * L::splat(light_terms.diffuse[1]),
-            n_dot_l * L::splat(light_terms.diffuse[2]),
-        ];
+        let light_slack = at.point_error.mul_add(per_distance + per_distance, L::splat(8.0 * U));
+        let diffuse_error = at.normal_error + light_slack + L::splat(16.0 * U);
+        let mut error = diffuse_error.mul_add(L::splat(light_terms.max_diffuse), colors.error);
+        let mut color = add_term::<L, GREY>(n_dot_l, light_terms.diffuse, colors.color);
         if terms.has_specular {
             let l_dot_v = -(dot(w, at.view) * per_distance);
             let s = one + l_dot_v;
@@ -151,23 +150,27 @@ pub(super) fn shade<L: Lanes>(
             };
             colors.doubt = colors.doubt | vague;
             let specular_error = off * L::splat(gain) + L::splat((2.0 * terms.steepness.min(1e9) + 16.0) * U);
-            error = error + specular_error * L::splat(light_terms.max_specular);
-            sum = [
-                sum[0] + power * L::splat(light_terms.specular[0]),
-                sum[1] + power * L::splat(light_terms.specular[1]),
-                sum[2] + power * L::splat(light_terms.specular[2]),
-            ];
+            error = specular_error.mul_add(L::splat(light_terms.max_specular), error);
+            color = add_term::<L, GREY>(power, light_terms.specular, color);
         }
-        colors.error = colors.error + L::select(lit, error, zero);
-        colors.color = [
-            colors.color[0] + L::select(lit, sum[0], zero),
-            colors.color[1] + L::select(lit, sum[1], zero),
-            colors.color[2] + L::select(lit, sum[2], zero),
-        ];
+        colors.error = L::select(lit, error, colors.error);
+        for k in 0..3 {
+            colors.color[k] = L::select(lit, color[k], colors.color[k]);
+        }
     }
     // Where no light adds anything the colour is exact.
     colors.error = L::select(any_lit, colors.error + L::splat(terms.rounding), colors.error);
     colors
+}
+
+/// Adds a share of a term to a colour.
+#[inline(always)]
+fn add_term<L: Lanes, const GREY: bool>(share: L, term: [f64; 3], color: [L; 3]) -> [L; 3] {
+    let red = share.mul_add(L::splat(term[0]), color[0]);
+    if GREY {
+        return [red; 3];
+    }
+    [red, share.mul_add(L::splat(term[1]), color[1]), share.mul_add(L::splat(term[2]), color[2])]
 }
 
 /// Returns x^P, given x² and P as twice `half`, or one more.

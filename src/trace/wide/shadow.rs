@@ -9,7 +9,7 @@
 use crate::plan::{Object, Part, Plan};
 use crate::trace::kernels::{Lanes, Mask};
 use crate::trace::wide::bounds::{Bounds, Face, FaceKind, Occluder, Side, U, WideLight};
-use crate::trace::wide::shade::Points;
+use crate::trace::wide::shade::{Points, dot, splat_each};
 
 /// D must be more than this share of a·r² for the roots of a wall to be taken.
 const MIN_WALL_DISCRIMINANT: f64 = 1.0 / 262_144.0;
@@ -127,15 +127,15 @@ pub(super) fn shadow<L: Lanes>(
         w: *w,
         a,
         distance,
-        error: at.point_error + L::splat(4.0 * U) * distance,
+        error: distance.mul_add(L::splat(4.0 * U), at.point_error),
         height: at.point[1],
         light_height: light.position[1],
     };
     let tau = distance * segment.error;
     for &i in spheres {
         let sphere = &light.spheres[i as usize];
-        let b = w[0] * L::splat(sphere.m[0]) + w[1] * L::splat(sphere.m[1]) + w[2] * L::splat(sphere.m[2]);
-        let discriminant = b * b - a * L::splat(sphere.power);
+        let b = dot(*w, splat_each(sphere.m));
+        let discriminant = b.mul_add(b, -(a * L::splat(sphere.power)));
         let slack = tau * L::splat(sphere.slack);
         let mut near = open & discriminant.ge(-slack);
         if occluders.is_shared {
@@ -196,7 +196,7 @@ fn behind_sphere<L: Lanes>(
         }
         Side::InLine | Side::Open | Side::Closed | Side::Unknown => return (none, !none),
     }
-    let b_slack = segment.error * (L::splat(sphere.m_length) + segment.distance * L::splat(2.0));
+    let b_slack = segment.error * segment.distance.mul_add(L::splat(2.0), L::splat(sphere.m_length));
     let beyond = b - segment.a;
     let free = b.lt(-b_slack) | beyond.gt(b_slack);
     let blocked = discriminant.gt(slack) & b.gt(b_slack) & beyond.lt(-b_slack);

@@ -1,6 +1,6 @@
 //! Lanes in two registers of 256 bits.
 //!
-//! Features: avx2 and what it includes.
+//! Features: avx2, fma, bmi1, popcnt, and what they include.
 
 mod single;
 
@@ -12,16 +12,19 @@ use crate::trace::kernels::{Job, Lanes, Mask, Numbers, SingleJob};
 /// Tells whether the machine has the instructions.
 pub(super) fn is_available() -> bool {
     is_x86_feature_detected!("avx2")
+        && is_x86_feature_detected!("fma")
+        && is_x86_feature_detected!("bmi1")
+        && is_x86_feature_detected!("popcnt")
 }
 
 /// Carries out a job on lanes of this kind.
-#[target_feature(enable = "avx2")]
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 pub(super) fn run<J: Job>(job: J) -> J::Output {
     job.run::<Lanes8>()
 }
 
 /// Carries out a job on binary32 lanes of this kind.
-#[target_feature(enable = "avx2")]
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 pub(super) fn run_single<J: SingleJob>(job: J) -> J::Output {
     job.run::<single::Lanes16>()
 }
@@ -85,7 +88,7 @@ impl Neg for Lanes8 {
     fn neg(self) -> Self {
         let [a, b] = self.0;
         // SAFETY: lanes of this kind exist inside of `run` alone.
-        Self(unsafe { [_mm256_xor_pd(a, _mm256_set1_pd(-0.0)), _mm256_xor_pd(b, _mm256_set1_pd(-0.0))] })
+        Self(unsafe { [_mm256_sub_pd(_mm256_set1_pd(-0.0), a), _mm256_sub_pd(_mm256_set1_pd(-0.0), b)] })
     }
 }
 
@@ -215,6 +218,28 @@ impl Numbers for Lanes8 {
 
 impl Lanes for Lanes8 {
     type Single = single::Lanes16;
+
+    #[inline(always)]
+    fn mul_add(self, factor: Self, addend: Self) -> Self {
+        let ([a, b], [c, d], [e, f]) = (self.0, factor.0, addend.0);
+        // SAFETY: lanes of this kind exist inside of `run` alone.
+        Self(unsafe { [_mm256_fmadd_pd(a, c, e), _mm256_fmadd_pd(b, d, f)] })
+    }
+
+    #[inline(always)]
+    fn reciprocal_bound(self) -> Self {
+        Self::splat(1.0 + f64::EPSILON) / self
+    }
+
+    #[inline(always)]
+    fn look_up(table: &[f64; 16], places: Self) -> Self {
+        let mut numbers = [0.0; 8];
+        places.store(&mut numbers);
+        for number in &mut numbers {
+            *number = table[*number as usize % 16];
+        }
+        Self::load(&numbers)
+    }
 }
 
 impl Mask for Mask8 {

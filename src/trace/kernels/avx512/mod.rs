@@ -1,6 +1,6 @@
 //! Lanes in one register of 512 bits.
 //!
-//! Features: avx512f, avx512dq, avx512vl, avx512bw, and what they include.
+//! Features: avx512f, avx512dq, avx512vl, avx512bw, bmi1, popcnt, and what they include.
 
 mod single;
 
@@ -16,22 +16,24 @@ pub(super) fn is_available() -> bool {
         && is_x86_feature_detected!("avx512dq")
         && is_x86_feature_detected!("avx512vl")
         && is_x86_feature_detected!("avx512bw")
+        && is_x86_feature_detected!("bmi1")
+        && is_x86_feature_detected!("popcnt")
 }
 
 /// Carries out a job on lanes of this kind.
-#[target_feature(enable = "avx512f,avx512dq,avx512vl,avx512bw")]
+#[target_feature(enable = "avx512f,avx512dq,avx512vl,avx512bw,bmi1,popcnt")]
 pub(super) fn run<J: Job>(job: J) -> J::Output {
     job.run::<Lanes8>()
 }
 
 /// Carries out a job on two of these lanes side by side: there are registers enough for much of two packets.
-#[target_feature(enable = "avx512f,avx512dq,avx512vl,avx512bw")]
+#[target_feature(enable = "avx512f,avx512dq,avx512vl,avx512bw,bmi1,popcnt")]
 pub(super) fn run_twofold<J: Job>(job: J) -> J::Output {
     job.run::<Pair<Lanes8>>()
 }
 
 /// Carries out a job on binary32 lanes of this kind.
-#[target_feature(enable = "avx512f,avx512dq,avx512vl,avx512bw")]
+#[target_feature(enable = "avx512f,avx512dq,avx512vl,avx512bw,bmi1,popcnt")]
 pub(super) fn run_single<J: SingleJob>(job: J) -> J::Output {
     job.run::<single::Lanes16>()
 }
@@ -90,7 +92,7 @@ impl Neg for Lanes8 {
     #[inline(always)]
     fn neg(self) -> Self {
         // SAFETY: lanes of this kind exist inside of `run` alone.
-        Self(unsafe { _mm512_xor_pd(self.0, _mm512_set1_pd(-0.0)) })
+        Self(unsafe { _mm512_sub_pd(_mm512_set1_pd(-0.0), self.0) })
     }
 }
 
@@ -193,6 +195,29 @@ impl Numbers for Lanes8 {
 
 impl Lanes for Lanes8 {
     type Single = single::Lanes16;
+
+    #[inline(always)]
+    fn mul_add(self, factor: Self, addend: Self) -> Self {
+        // SAFETY: lanes of this kind exist inside of `run` alone.
+        Self(unsafe { _mm512_fmadd_pd(self.0, factor.0, addend.0) })
+    }
+
+    /// The instruction is off by at most a share of 2⁻¹⁴.
+    #[inline(always)]
+    fn reciprocal_bound(self) -> Self {
+        const WIDENED: f64 = 1.0 + 1.0 / 8192.0;
+        // SAFETY: lanes of this kind exist inside of `run` alone.
+        Self(unsafe { _mm512_rcp14_pd(self.0) }) * Self::splat(WIDENED)
+    }
+
+    #[inline(always)]
+    fn look_up(table: &[f64; 16], places: Self) -> Self {
+        // SAFETY: as above; the sixteen numbers are there, and of each place only four bits are taken.
+        Self(unsafe {
+            let (low, high) = (_mm512_loadu_pd(table.as_ptr()), _mm512_loadu_pd(table.as_ptr().add(8)));
+            _mm512_permutex2var_pd(low, _mm512_cvttpd_epi64(places.0), high)
+        })
+    }
 }
 
 impl Mask for Mask8 {

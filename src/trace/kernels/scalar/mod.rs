@@ -229,4 +229,19 @@ scalar_lanes!(Lanes8: [f64; 8], Mask8: u8);
 
 impl crate::trace::kernels::Lanes for Lanes8 {
     type Single = single::Lanes16;
+
+    #[inline]
+    fn mul_add(self, factor: Self, addend: Self) -> Self {
+        self * factor + addend
+    }
+
+    #[inline]
+    fn reciprocal_bound(self) -> Self {
+        Self([1.0 + f64::EPSILON; 8]) / self
+    }
+
+    #[inline]
+    fn look_up(table: &[f64; 16], places: Self) -> Self {
+        places.map(|place| table[place as usize % 16])
+    }
 }
