@@ -30,7 +30,7 @@ mod tiles;
 mod tree;
 mod writes;
 
-pub use apex::{Expect, Look};
+pub use apex::{CubeFace, Expect, Look, Slopes};
 pub use bodies::Region;
 pub use candidates::{Candidates, Object, ObjectLists};
 pub use dump::{dump_plans, dump_plans_json};
@@ -192,6 +192,14 @@ impl Plan<'_> {
         add: impl FnMut(Look),
     ) -> Option<()> {
         self.around_lights.get(light_idx)?.looks(from_light, add)
+    }
+
+    /// Returns where to look for what lies between a light and some points, given what the light sees of all of them through
+    /// one face of a cube around it; `None` when they are too far apart for that, or nothing is looked up.
+    #[inline]
+    #[must_use]
+    pub fn look_at_once(&self, light_idx: usize, face: CubeFace, seen: Slopes<f64>) -> Option<Look> {
+        self.around_lights.get(light_idx)?.look_at_once(face, seen)
     }
 
     /// Asks for the memory that some looks, each with its light, will need, one after the other.

@@ -286,7 +286,7 @@ pub fn is_within_range(view: &SceneView<'_>, part: Part) -> bool {
 #[cfg(test)]
 impl Scene<'_> {
     /// Makes a scene of nothing but shapes.
-    pub(super) fn of_shapes(spheres: SphereLanes, cylinders: CylinderLanes) -> Self {
+    pub(crate) fn of_shapes(spheres: SphereLanes, cylinders: CylinderLanes) -> Self {
         Self {
             background: DVec3::ZERO,
             lights: Vec::new(),

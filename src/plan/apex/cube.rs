@@ -4,7 +4,7 @@
 //! sorted into grids ([`Grid`]), as [`Spot`]s. A query goes through the face of its largest coordinate, where both slopes
 //! are at most 1; its error may add a little, which faces overlap by ([`LIMIT`]).
 
-use std::ops::{Range, RangeInclusive};
+use std::ops::{Add, Div, Mul, Neg, Range, RangeInclusive, Sub};
 
 use rayon::prelude::*;
 
@@ -14,12 +14,6 @@ use crate::plan::{Object, Scene};
 
 /// Faces reach to slopes of this, 1 + 2⁻¹⁰.
 const LIMIT: f64 = 1.0 + 1.0 / 1024.0;
-
-/// A query must lead this many times as far as it is off, 2¹³: then its slopes are off by less than 2⁻¹¹.
-const MIN_PRECISION: f64 = 8192.0;
-
-/// Queries that lead less far are not looked up: their error bounds could underflow.
-const SHORTEST: f64 = f64::from_bits((1023 - 500) << 52);
 
 /// Objects that a thread takes at a time.
 const OBJECTS_PER_TASK: usize = 1 << 14;
@@ -46,26 +40,82 @@ struct Face {
     grids: Vec<Grid>,
 }
 
+/// One of the six faces of the cube.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CubeFace(usize);
+
 /// Which coordinates a face looks across and ahead, and whether ahead is backward.
 #[derive(Clone, Copy)]
 struct Frame {
     across: [usize; 2],
     ahead: usize,
-    sign: f64,
+    is_backward: bool,
 }
 
-impl Frame {
-    /// Cylinders stand along y, which is the second axis across where it can be.
+impl CubeFace {
+    /// Returns the face of the largest coordinate.
     #[inline]
-    fn of_face(face: usize) -> Self {
-        let (across, ahead) = [([2, 1], 0), ([0, 2], 1), ([0, 1], 2)][face / 2];
-        Self { across, ahead, sign: [1.0, -1.0][face % 2] }
+    #[must_use]
+    pub fn toward(way: [f64; 3]) -> Self {
+        let [x, y, z] = [way[0].abs(), way[1].abs(), way[2].abs()];
+        let axis = if x >= y && x >= z {
+            0
+        } else if y >= z {
+            1
+        } else {
+            2
+        };
+        Self(2 * axis + usize::from(way[axis] < 0.0))
     }
 
     /// Returns the coordinates across and ahead.
     #[inline]
-    fn look(self, v: [f64; 3]) -> [f64; 3] {
-        [v[self.across[0]], v[self.across[1]], self.sign * v[self.ahead]]
+    pub fn look<T: Copy + Neg<Output = T>>(self, v: [T; 3]) -> [T; 3] {
+        let Frame { across: [i, j], ahead, is_backward } = self.frame();
+        [v[i], v[j], if is_backward { -v[ahead] } else { v[ahead] }]
+    }
+
+    /// Cylinders stand along y, which is the second axis across where it can be.
+    #[inline]
+    fn frame(self) -> Frame {
+        let (across, ahead) = [([2, 1], 0), ([0, 2], 1), ([0, 1], 2)][self.0 / 2];
+        Frame { across, ahead, is_backward: self.0 % 2 == 1 }
+    }
+}
+
+/// What is seen of a segment from the apex through a face: between which slopes it runs, and how far ahead.
+///
+/// With w the coordinate ahead, s one of the slopes and e the error, the exact slope is off from s by at most
+/// e·(1 + |s|)/(w − e), which is below 3e/w, and two roundings.
+#[derive(Clone, Copy, Debug)]
+pub struct Slopes<T> {
+    /// The least slopes.
+    pub low: [T; 2],
+    /// The largest slopes.
+    pub high: [T; 2],
+    /// Up to a rounding at least the coordinate ahead of the segment's end.
+    pub far: T,
+}
+
+impl<T: Copy + Add<Output = T> + Sub<Output = T> + Mul<Output = T> + Div<Output = T>> Slopes<T> {
+    /// Looks along a segment of which the coordinate ahead is the largest, at least [`Look::SHORTEST`] and [`Look::MIN_PRECISION`] times
+    /// as large as the error of each.
+    #[inline(always)]
+    pub fn new([u, v, ahead]: [T; 3], error: T, number: impl Fn(f64) -> T) -> Self {
+        let inverse = number(1.0) / ahead;
+        let slopes = [u * inverse, v * inverse];
+        let slack = number(4.0) * error * inverse + number(8.0 * ROUNDOFF);
+        Self {
+            low: [slopes[0] - slack, slopes[1] - slack],
+            high: [slopes[0] + slack, slopes[1] + slack],
+            far: ahead + error,
+        }
+    }
+}
+
+impl Slopes<f64> {
+    fn query(self) -> Query {
+        Query { low: self.low, high: self.high, far: (self.far as f32).next_up() }
     }
 }
 
@@ -111,6 +161,14 @@ pub trait Expect {
     fn expect<T>(items: &[T], i: usize);
 }
 
+impl Look {
+    /// A segment must lead this many times as far as it is off, 2¹³: then its slopes are off by less than 2⁻¹¹.
+    pub const MIN_PRECISION: f64 = 8192.0;
+
+    /// Segments that lead less far are not looked up: their error bounds could underflow.
+    pub const SHORTEST: f64 = f64::from_bits((1023 - 500) << 52);
+}
+
 impl Cube {
     /// Calls `add` with where to look for what lies between the apex and some points, in as few looks as possible; `None`
     /// when an error is too large to tell.
@@ -130,6 +188,14 @@ impl Cube {
         }
         last.into_iter().for_each(add);
         Some(())
+    }
+
+    /// Returns where to look for what lies between the apex and some points, given what is seen of all of them through one
+    /// face; `None` when they are too far apart to be looked up as one.
+    #[inline]
+    pub fn look_at_once(&self, CubeFace(face): CubeFace, sight: Slopes<f64>) -> Option<Look> {
+        let query = sight.query();
+        self.faces[face].is_narrow(&query).then_some(Look { face, query })
     }
 
     /// Asks for the cells of a look.
@@ -164,31 +230,16 @@ impl Cube {
 }
 
 /// Returns the face that a segment from the apex goes through, and where.
-///
-/// With w the coordinate ahead, s one of the slopes and e the error, the exact slope is off from s by at most
-/// e·(1 + |s|)/(w − e), which is below 3e/w, and two roundings.
 #[inline]
 fn query(to_point: [f64; 3], error: f64) -> Option<(usize, Query)> {
-    let [x, y, z] = [to_point[0].abs(), to_point[1].abs(), to_point[2].abs()];
-    let axis = if x >= y && x >= z {
-        0
-    } else if y >= z {
-        1
-    } else {
-        2
-    };
-    let face = 2 * axis + usize::from(to_point[axis] < 0.0);
-    let [u, v, ahead] = Frame::of_face(face).look(to_point);
+    let face = CubeFace::toward(to_point);
+    let way = face.look(to_point);
+    let ahead = way[2];
     // Also false for what is no number.
-    if !(ahead >= MIN_PRECISION * error && ahead >= SHORTEST && ahead.is_finite()) {
+    if !(ahead >= Look::MIN_PRECISION * error && ahead >= Look::SHORTEST && ahead.is_finite()) {
         return None;
     }
-    let inverse = 1.0 / ahead;
-    let slopes = [u * inverse, v * inverse];
-    let slack = 4.0 * error * inverse + 8.0 * ROUNDOFF;
-    let far = (ahead + error) as f32;
-    let [low, high] = [[slopes[0] - slack, slopes[1] - slack], [slopes[0] + slack, slopes[1] + slack]];
-    Some((face, Query { low, high, far: far.next_up() }))
+    Some((face.0, Slopes::new(way, error, |number| number).query()))
 }
 
 /// Appends a sphere to the faces that see it.
@@ -199,7 +250,7 @@ fn add_sphere(scene: &Scene<'_>, apex: [f64; 3], i: usize, faces: &mut [Vec<Spot
     let moved = ROUNDOFF * center.map(f64::abs).iter().sum::<f64>();
     let radius = (spheres.radius[i] + 2.0 * moved) * (1.0 + 4.0 * ROUNDOFF);
     for axis in 0..3 {
-        let [u, v, ahead] = Frame::of_face(2 * axis).look(center);
+        let [u, v, ahead] = CubeFace(2 * axis).look(center);
         let across = u.abs().max(v.abs());
         for (face, ahead) in [(2 * axis, ahead), (2 * axis + 1, -ahead)] {
             // Beyond the plane slope = LIMIT, from which the centre is this far times √2.
@@ -219,11 +270,11 @@ fn add_cylinder(scene: &Scene<'_>, apex: [f64; 3], i: usize, object: u32, faces:
     let radius = (cylinders.radius[i] + 2.0 * moved) * (1.0 + 4.0 * ROUNDOFF);
     let heights = [(cylinders.y_min[i] - apex[1]).next_down(), (cylinders.y_max[i] - apex[1]).next_up()];
     for (face, spots) in faces.iter_mut().enumerate() {
-        let frame = Frame::of_face(face);
-        let [u, v, ahead] = frame.look(axis);
-        let outline = match (frame.ahead, frame.sign > 0.0) {
-            (1, true) => Outline::of_cylinder_from_below([u, v], radius, heights),
-            (1, false) => Outline::of_cylinder_from_below([u, v], radius, [-heights[1], -heights[0]]),
+        let face = CubeFace(face);
+        let (frame, [u, v, ahead]) = (face.frame(), face.look(axis));
+        let outline = match (frame.ahead, frame.is_backward) {
+            (1, false) => Outline::of_cylinder_from_below([u, v], radius, heights),
+            (1, true) => Outline::of_cylinder_from_below([u, v], radius, [-heights[1], -heights[0]]),
             _ => Outline::of_upright_cylinder([u, ahead], radius, heights),
         };
         spots.extend(outline.and_then(|outline| spot(&outline, object)));
@@ -340,7 +391,7 @@ mod tests {
         {
             let (found, query) = query(to_point, 1e-12).expect("precise enough");
             assert_eq!(found, face);
-            let slopes = Frame::of_face(face).look(to_point);
+            let slopes = CubeFace(face).look(to_point);
             for k in 0..2 {
                 let slope = slopes[k] / slopes[2];
                 assert!(query.low[k] < slope && slope < query.high[k] && query.high[k] - query.low[k] < 1e-11);

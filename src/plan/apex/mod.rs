@@ -12,7 +12,7 @@ mod outline;
 
 pub(super) use bins::{Bins, Cells};
 pub(super) use cube::Cube;
-pub use cube::{Expect, Look};
+pub use cube::{CubeFace, Expect, Look, Slopes};
 pub(super) use outline::Outline;
 
 /// Half an ulp of 1.

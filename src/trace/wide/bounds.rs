@@ -269,6 +269,8 @@ pub(super) struct Bounds {
     pub cylinders: Vec<EyeCylinder>,
     pub lights: Vec<WideLight>,
     pub terms: Vec<Terms>,
+    /// Whether all of this is known of all objects; of a crowd it may be worked out when it is needed.
+    pub has_objects: bool,
     /// Spheres that are met from outside and have equal surfaces, by the numbers of their faces: a packet that meets
     /// several of them is shaded as one.
     pub groups: Vec<Vec<u32>>,
@@ -300,6 +302,7 @@ impl Bounds {
         let mirrored: Vec<_> = (0..).zip(&faces[..n_spheres]).map(MirroredSphere::new).collect();
         Some(Self {
             groups,
+            has_objects: true,
             owners: owners(&faces),
             cluster: Cluster::new(plan, &faces, &mirrored),
             mirrored,
@@ -316,6 +319,9 @@ impl Bounds {
         })
     }
 }
+
+/// The constants of more objects are worked out when they are needed: each is needed seldom.
+const MAX_TABULATED: usize = 1 << 14;
 
 /// More equations are not told apart by a table.
 const MAX_OWNERS: u32 = 1 << 16;
@@ -395,6 +401,22 @@ impl Bounds {
         })
     }
 
+    /// Adds the constants of all objects of a crowd, unless they are too many or one of them is left to finer arithmetic.
+    pub fn with_objects(self, plan: &Plan<'_>) -> Self {
+        let scene = &plan.scene;
+        if scene.n_objects() > MAX_TABULATED {
+            return self;
+        }
+        let [spheres, cylinders] = [&scene.spheres.radius, &scene.cylinders.radius].map(|radii| 0..radii.len() as u32);
+        let (spheres, cylinders): (Vec<_>, Vec<_>) = (spheres.collect(), cylinders.collect());
+        let Some(objects) = self.of_some(plan, Candidates { spheres: &spheres, cylinders: &cylinders }) else {
+            return self;
+        };
+        let Self { faces, spheres, mirrored, cylinders, .. } = objects;
+        let lights = scene.lights.iter().map(|light| seen_from(scene, light)).collect();
+        Self { faces, spheres, mirrored, cylinders, lights, has_objects: true, ..self }
+    }
+
     /// Works out the constants of some objects of a crowd, without lights and surfaces.
     pub fn of_some(&self, plan: &Plan<'_>, some: Candidates<'_>) -> Option<Self> {
         let mut faces = Vec::with_capacity(some.spheres.len() + 3 * some.cylinders.len());
@@ -417,6 +439,7 @@ impl Bounds {
         Self {
             eye: Eye { roundoff: eye_roundoff, stretch: 1.0 },
             eye_roundoff,
+            has_objects: false,
             groups: Vec::new(),
             faces: Vec::new(),
             spheres: Vec::new(),

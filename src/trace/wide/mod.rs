@@ -16,6 +16,7 @@
     reason = "what is not inlined, as many an iterator, misses the backend's instructions"
 )]
 
+mod beam;
 mod bounds;
 mod cluster;
 mod crowd;
@@ -31,6 +32,7 @@ mod shadow;
 mod tests;
 
 use std::ops::Range;
+use std::sync::OnceLock;
 
 pub(super) use self::bounds::FaceKind;
 
@@ -40,6 +42,7 @@ use crate::trace::Counts;
 use crate::trace::kernels::{Backend, Job, Lanes, Mask};
 use crate::trace::pixel::Sampling;
 
+use self::beam::Balls;
 use self::bounds::{Bounds, Face};
 use self::cluster::{Cluster, Table};
 use self::crowd::{Around, Few};
@@ -59,6 +62,9 @@ const TILE_HEIGHT: usize = 16;
 
 const TILE_PIXELS: usize = TILE_WIDTH * TILE_HEIGHT;
 
+/// More objects that mirrors show are held against a packet of rays as balls, before they are tested.
+const MAX_GONE_THROUGH: usize = 24;
+
 /// More samples along a side of a pixel are left to the slower way: a cancellation is seen between tiles.
 const MAX_SAMPLES: u32 = 16;
 
@@ -67,8 +73,12 @@ const MAX_SAMPLES: u32 = 16;
 pub(super) struct Wide {
     backend: Backend,
     bounds: Bounds,
-    /// Whether there are so many objects that their constants are worked out when they are needed.
+    /// Whether there are so many objects that what a packet may meet is looked up.
     is_crowd: bool,
+    /// For each face, and then for each group, what can hide the lights from it, once it is met; none of a crowd.
+    occluders: Vec<OnceLock<LightOccluders>>,
+    /// What packets of reflected rays are held against first.
+    balls: Balls,
     /// Of the camera, rounded.
     step: f64,
     background: u32,
@@ -102,8 +112,6 @@ pub(super) struct Scratch {
     t: Vec<f64>,
     hits: Vec<PacketHit>,
     rows: Vec<RowSphere>,
-    /// For each face, and then for each group, what can hide the lights from it, once it is met.
-    occluders: Vec<Option<LightOccluders>>,
     waiting: Waiting,
     /// The rays that are followed.
     followed: Vec<Packet>,
@@ -140,8 +148,10 @@ impl Wide {
         let bounds = match (is_moderate, is_crowd) {
             (false, _) => return None,
             (true, false) => Bounds::new(plan, dir_error, max_slope)?,
-            (true, true) => Bounds::of_crowd(plan, dir_error, max_slope)?,
+            (true, true) => Bounds::of_crowd(plan, dir_error, max_slope)?.with_objects(plan),
         };
+        let has_objects = bounds.has_objects;
+        let n_slots = if is_crowd { 0 } else { bounds.faces.len() + bounds.groups.len() };
         let are_equal = bounds.terms.iter().all(|terms| terms.reflectance == 0.0 || terms.is_grey());
         let table = bounds.cluster.as_ref().and_then(|cluster| cluster.table.as_ref());
         let is_grey = |table: &Table| bounds.terms[bounds.faces[table.face].surface].is_grey();
@@ -151,6 +161,12 @@ impl Wide {
             bounds,
             channels: if are_equal { Channels::Equal } else { Channels::Three },
             is_crowd,
+            occluders: std::iter::repeat_with(OnceLock::new).take(n_slots).collect(),
+            balls: if has_objects && plan.mirrored().len() > MAX_GONE_THROUGH {
+                Balls::new(&plan.scene)
+            } else {
+                Balls::default()
+            },
             step: step.value(),
             background: u32::from_le_bytes([background[0], background[1], background[2], 0]),
             samples: settings.samples,
@@ -169,7 +185,6 @@ impl Wide {
             t: vec![0.0; TILE_PIXELS],
             hits: Vec::new(),
             rows: Vec::new(),
-            occluders: vec![None; self.bounds.faces.len() + self.bounds.groups.len()],
             waiting: Waiting::new(self.channels),
             followed: Vec::new(),
             around: Around::default(),
@@ -210,7 +225,7 @@ impl Wide {
     /// Traces a tile into the scratch.
     pub fn trace(&self, plan: &Plan<'_>, sampling: &Sampling, rect: &Rect, scratch: &mut Scratch) {
         let among = plan.tiles.candidates(rect.columns.start, rect.rows.start);
-        if !self.is_crowd {
+        if self.bounds.has_objects {
             let bounds = &self.bounds;
             let job = TileJob { wide: self, bounds, among, plan, sampling, rect, scratch, sample: [0; 2] };
             // Packets of sixteen would reach beyond narrower tiles.
@@ -307,7 +322,7 @@ impl Job for TileJob<'_> {
     }
 }
 
-impl TileJob<'_> {
+impl<'a> TileJob<'a> {
     /// Returns dx of the packet's eye rays and dy of its row.
     #[inline(always)]
     fn directions<L: Lanes>(&self, packet: usize) -> (L, f64) {
@@ -524,10 +539,7 @@ impl TileJob<'_> {
         let bounds = &self.wide.bounds;
         let shared = face.group.filter(|_| is_shared).map(|group| group as usize);
         let slot = shared.map_or_else(|| face_index(bounds, face), |group| bounds.faces.len() + group);
-        if self.scratch.occluders[slot].is_none() {
-            self.scratch.occluders[slot] = Some(collect_occluders(bounds, self.plan, face, shared));
-        }
-        let Some(occluders) = &self.scratch.occluders[slot] else { unreachable!("it was just collected") };
+        let occluders = self.wide.occluders[slot].get_or_init(|| collect_occluders(bounds, self.plan, face, shared));
         let colors = shade::shade::<L, GREY>(&bounds.lights, &bounds.terms[face.surface], occluders, at);
         self.scratch.counts.shadow_rays += u64::from(colors.shadow_rays);
         colors
@@ -543,7 +555,7 @@ impl TileJob<'_> {
             let zero = L::splat(0.0);
             return Colors { color: [zero; 3], error: zero, doubt: at.active, shadow_rays: 0 };
         }
-        let colors = shade::shade::<L, false>(&around.lights, terms, &around.occluders, at);
+        let colors = shade::shade::<L, false>(around.lights(all), terms, &around.occluders, at);
         counts.shadow_rays += u64::from(colors.shadow_rays);
         colors
     }
@@ -570,26 +582,47 @@ impl TileJob<'_> {
             self.follow_in_cluster::<L>(cluster, table, packet);
             return;
         }
-        if !self.wide.is_crowd {
-            let leaving = packet.common::<L>(Number::Leaving).and_then(|equation| self.bounds.owner(equation));
-            let among = leaving.map_or_else(|| self.plan.mirrored(), |object| self.plan.mirrored_by(object));
-            self.follow_among::<L>(among, packet);
+        if self.wide.is_crowd || !self.wide.balls.are_none() {
+            self.find_and_follow::<L>(packet);
             return;
         }
+        self.follow_among::<L>(self.listed::<L>(packet), packet);
+    }
+
+    /// Returns what the plan lists for a packet of rays.
+    #[inline(always)]
+    fn listed<L: Lanes>(&self, packet: &Packet) -> Candidates<'a> {
+        let leaving = packet.common::<L>(Number::Leaving).and_then(|equation| self.bounds.owner(equation));
+        leaving.map_or_else(|| self.plan.mirrored(), |object| self.plan.mirrored_by(object))
+    }
+
+    /// Finds what a packet of rays may meet, and follows it.
+    #[inline(always)]
+    fn find_and_follow<L: Lanes>(&mut self, packet: &Packet) {
+        let TileJob { wide, plan, sampling, rect, sample, bounds, .. } = *self;
+        let (rays, lanes) = (packet.rays::<L>(), packet.lanes::<L>());
         let mut found = std::mem::take(&mut self.scratch.found);
-        let few = crowd::find_along::<L>(self.plan, &packet.rays(), packet.lanes::<L>(), &mut found)
-            .then(|| Few::new(&self.wide.bounds, self.plan, found.as_candidates()))
-            .flatten();
-        self.scratch.found = found;
-        match few {
-            None => self.mark_places::<L>(packet.get(Number::Pixel), packet.lanes::<L>()),
-            Some(few) => {
-                let TileJob { wide, plan, sampling, rect, sample, .. } = *self;
-                let (bounds, among, scratch) = (&few.bounds, few.candidates(), &mut *self.scratch);
-                let mut job = TileJob { wide, bounds, among, plan, sampling, rect, scratch, sample };
-                job.follow_among::<L>(among, packet);
+        let among = if wide.balls.list(&rays, lanes, &mut found) {
+            Some(found.as_candidates())
+        } else if !wide.is_crowd {
+            Some(self.listed::<L>(packet))
+        } else {
+            crowd::find_along::<L>(plan, &rays, lanes, &mut found).then(|| found.as_candidates())
+        };
+        // The constants of a crowd may still have to be worked out.
+        let few = among.filter(|_| !wide.bounds.has_objects).and_then(|among| Few::new(&wide.bounds, plan, among));
+        let known = match &few {
+            Some(few) => Some((&few.bounds, few.candidates())),
+            None => among.filter(|_| wide.bounds.has_objects).map(|among| (bounds, among)),
+        };
+        match known {
+            None => self.mark_places::<L>(packet.get(Number::Pixel), lanes),
+            Some((bounds, among)) => {
+                let scratch = &mut *self.scratch;
+                TileJob { wide, bounds, among, plan, sampling, rect, scratch, sample }.follow_among::<L>(among, packet);
             }
         }
+        self.scratch.found = found;
     }
 
     /// Follows a packet of rays among spheres of one grey surface that form a cluster.

@@ -26,17 +26,23 @@ pub(super) struct LightOccluders {
 }
 
 impl LightOccluders {
-    /// Says that what may hide a light are all of its objects, or that it is hidden.
-    pub fn number(&mut self, light_idx: usize, light: &WideLight, is_hidden: bool) {
+    /// Lists what may hide a light, or says that it is hidden.
+    pub fn list(
+        &mut self,
+        light_idx: usize,
+        is_hidden: bool,
+        spheres: impl Iterator<Item = u32>,
+        cylinders: impl Iterator<Item = u32>,
+    ) {
         if self.lists.len() <= light_idx {
             self.lists.resize_with(light_idx + 1, Default::default);
             self.hidden.resize(light_idx + 1, false);
         }
         self.hidden[light_idx] = is_hidden;
-        for (list, objects) in self.lists[light_idx].iter_mut().zip([&light.spheres, &light.cylinders]) {
-            list.clear();
-            list.extend(0..objects.len() as u32);
-        }
+        let lists = &mut self.lists[light_idx];
+        lists.iter_mut().for_each(Vec::clear);
+        lists[0].extend(spheres);
+        lists[1].extend(cylinders);
     }
 
     /// Collects what the plan has left, without what shares the face's equation: a ray that leaves a face outward meets
