@@ -51,6 +51,13 @@ fn any_ball(stream: &mut Stream, bits: usize) -> Ball {
     Ball { radius, ..third }
 }
 
+/// Makes a ball about 0 or 1, or beside it.
+fn about_a_limit(stream: &mut Stream, bits: usize) -> Ball {
+    let aside = [1.0, -1.0][stream.below(2)] * libm::exp2(stream.between(-50.0, 0.0));
+    let middle = Ball::exact([0.0, 1.0][stream.below(2)] + aside, bits);
+    Ball { radius: Mag::new(aside.abs() * libm::exp2(stream.between(-9.0, 3.0)), 0), ..middle }
+}
+
 #[test]
 fn operations_hold_the_ends() {
     let mut stream = Stream::new(43);
@@ -73,49 +80,70 @@ fn operations_hold_the_ends() {
     }
 }
 
-#[test]
-fn functions_hold_the_ends() {
-    let mut stream = Stream::new(47);
+/// Calls `check` with many balls, their ends and the size of their middles.
+fn for_many(seed: u64, check: impl Fn(&Ball, [Mid; 2], f64)) {
+    let mut stream = Stream::new(seed);
     for _ in 0..500 {
         let bits = FEW[stream.below(FEW.len())];
-        let a = any_ball(&mut stream, bits);
-        let size = a.to_f64().abs();
-        let context = Context::<HalfEven>::new(MANY);
-        if a.to_f64() > 0.0 {
-            let roots = ends(&a).map(|end| context.sqrt(end.repr()).expect("a root").value());
-            // The bound on a root is that of the narrow: twice what a wide ball needs, at most.
-            let middle = a.sqrt();
-            for root in &roots {
-                assert!(distance(root, &middle.mid.clone().with_precision(MANY).value()) <= mid(middle.radius()));
-            }
-            let ulp = libm::exp2(1.0 - bits as f64) * size.sqrt();
-            assert!(middle.radius() <= a.radius() / size.sqrt() * SPARE + SPARE_ULPS * ulp, "{a:?}: {middle:?}");
-        }
-        let with_zero = a.or_zero();
-        assert_fits("a share or none", &with_zero, &[ends(&a)[0].clone(), ends(&a)[1].clone(), mid(0.0)], 2.0 * size);
-        let [one, zero] = [1.0, 0.0].map(mid);
-        let clamp = |end: &Mid| {
-            if *end < zero {
-                mid(0.0)
-            } else if *end > one {
-                mid(1.0)
-            } else {
-                end.clone()
-            }
-        };
-        let clamped = a.clamp01();
-        for end in ends(&a) {
-            let middle = clamped.mid.clone().with_precision(MANY).value();
-            assert!(distance(&clamp(&end), &middle) <= mid(clamped.radius()), "{a:?} clamped: {clamped:?}");
-        }
-        assert!(clamped.radius() <= a.radius().min(1.0));
-        let low = &ends(&a)[0];
-        let high = &ends(&a)[1];
-        match a.sign() {
-            Some(Ordering::Less) => assert!(*high < zero),
-            Some(Ordering::Greater) => assert!(*low > zero),
-            Some(Ordering::Equal) => assert!(*low == zero && *high == zero),
-            None => assert!(a.radius() >= 0.99 * size, "{a:?}"),
-        }
+        let ball = if stream.below(2) == 0 { any_ball(&mut stream, bits) } else { about_a_limit(&mut stream, bits) };
+        check(&ball, ends(&ball), ball.to_f64().abs());
     }
+}
+
+#[test]
+fn roots_hold_the_ends() {
+    let context = Context::<HalfEven>::new(MANY);
+    for_many(47, |ball, [low, high], size| {
+        if high <= Mid::ZERO {
+            return;
+        }
+        let root = ball.sqrt();
+        let middle = root.mid.clone().with_precision(MANY).value();
+        for end in [&low, &high] {
+            let exact = if *end > Mid::ZERO { context.sqrt(end.repr()).expect("a root").value() } else { mid(0.0) };
+            assert!(distance(&exact, &middle) <= mid(root.radius()), "{ball:?}: {root:?}");
+        }
+        let ulp = libm::exp2(1.0 - ball.mid.precision() as f64) * size.sqrt();
+        let most = if low > Mid::ZERO { ball.radius() / size.sqrt() } else { (size + ball.radius()).sqrt() };
+        assert!(root.radius() <= most * SPARE + SPARE_ULPS * ulp, "{ball:?}: {root:?}");
+    });
+}
+
+#[test]
+fn clamps_hold_the_ends() {
+    let [zero, one] = [0.0, 1.0].map(mid);
+    for_many(48, |ball, [low, high], size| {
+        let exact = [low.clone(), high.clone(), zero.clone()];
+        assert_fits("a share or none", &ball.or_zero(), &exact, 2.0 * size);
+        let clamped = ball.clamp01();
+        let middle = clamped.mid.clone().with_precision(MANY).value();
+        for end in [&low, &high] {
+            let exact = end.clone().clamp(zero.clone(), one.clone());
+            assert!(distance(&exact, &middle) <= mid(clamped.radius()), "{ball:?} clamped: {clamped:?}");
+        }
+        assert!(clamped.radius() <= ball.radius().min(1.0));
+        assert!(clamped.radius() == 0.0 || (low <= one && high >= zero), "{ball:?} clamped: {clamped:?}");
+    });
+}
+
+#[test]
+fn what_is_said_of_a_ball_is_true_of_its_ends() {
+    for_many(49, |ball, [low, high], size| {
+        let zero = Mid::ZERO;
+        assert_eq!(ball.is_zero(), low == zero && high == zero);
+        match ball.sign() {
+            Some(Ordering::Less) => assert!(high < zero),
+            Some(Ordering::Greater) => assert!(low > zero),
+            Some(Ordering::Equal) => assert!(low == zero && high == zero),
+            None => assert!(ball.radius() >= 0.99 * size, "{ball:?}"),
+        }
+        for sharp_bits in [1, 40, 90] {
+            let share = ball.radius() * libm::exp2(sharp_bits as f64) / size;
+            let is_close = (0.99..=1.01).contains(&share);
+            assert!(
+                is_close || ball.is_sharp_beside(ball, sharp_bits) == (share < 1.0),
+                "{ball:?} to {sharp_bits} bits"
+            );
+        }
+    });
 }
