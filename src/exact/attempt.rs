@@ -9,11 +9,16 @@ use crate::exact::real::Real;
 use crate::exact::scene::{Body, Scene};
 use crate::exact::tie::{Tie, Ties};
 use crate::exact::vec3::{Vec3, add, divide};
-use crate::exact::{Pixel, Renderer, SampleAt, Settings};
+use crate::exact::{LADDER, Pixel, Renderer, SampleAt, Settings};
 use crate::ir;
 
 /// Added to 255 c before it is rounded down, so that 0.6 = 153/255 gives 153. The semantics fix it at 2⁻²⁰.
 const QUANTISE_BIAS: f64 = 1.0 / 1_048_576.0;
+
+/// What the parts of a pixel cost at 96 bits, in units of [`Pixel::work`]: measured, and rounded.
+const WORK_OF_RAY: u64 = 256;
+pub const WORK_OF_TEST: u64 = 128;
+pub const WORK_OF_LIGHT: u64 = 512;
 
 /// A comparison could not be decided at this precision.
 #[derive(Clone, Copy, Debug)]
@@ -36,6 +41,7 @@ pub struct Attempt<'a> {
     /// Who is asked what balls leave open, unless the scene is without algebra.
     algebra: RefCell<Algebra>,
     found: Cell<Found>,
+    work: Cell<u64>,
 }
 
 /// The ties that were found so far.
@@ -58,7 +64,23 @@ impl<'a> Attempt<'a> {
             tests_all: renderer.tests_all,
             algebra: RefCell::new(Algebra::new(scene.kappa.clone())),
             found: Cell::default(),
+            work: Cell::default(),
         }
+    }
+
+    /// Counts work that grows with the precision.
+    pub fn spend(&self, work: u64) {
+        self.spend_once(work * self.scene.arithmetic.bits as u64 / LADDER[0] as u64);
+    }
+
+    /// Counts work that does not.
+    pub fn spend_once(&self, work: u64) {
+        self.work.set(self.work.get() + work);
+    }
+
+    /// Returns the work so far: see [`Pixel::work`].
+    pub fn work(&self) -> u64 {
+        self.work.get() + self.algebra.borrow().work()
     }
 
     /// Decides the sign of a number.
@@ -113,6 +135,7 @@ impl<'a> Attempt<'a> {
             algebraic_ties: Ties::default(),
             open_ties: Ties::default(),
             bits: self.scene.arithmetic.bits,
+            work: 0,
         };
         for (axis, channel) in average.iter().enumerate() {
             let value = channel * &self.number(255.0);
@@ -141,6 +164,7 @@ impl<'a> Attempt<'a> {
 
     /// Returns the ray of one sample: d = ((2i − W) k/H, (H − 2j) k/H, −1) with i and j moved by the sample's offset.
     fn eye_ray(&self, column: u32, row: u32, sample_column: u32, sample_row: u32) -> Ray {
+        self.spend(WORK_OF_RAY);
         let n = f64::from(self.settings.samples);
         let [width, height] = [self.settings.width, self.settings.height].map(f64::from);
         // In steps of which half a pixel has n: 2n ((s + 1/2) / n − 1/2), and n more for the centre.

@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use crate::exact::attempt::{Attempt, Decided};
+use crate::exact::attempt::{Attempt, Decided, WORK_OF_TEST};
 use crate::exact::reach::{ApproxRay, approximate_bound};
 use crate::exact::real::Real;
 use crate::exact::scene::{Body, Cap, Equation, Quadric};
@@ -122,6 +122,7 @@ impl Attempt<'_> {
 
     /// Tells whether a body is surely not met before `t_max`.
     fn is_left_out(&self, ray: &Ray, body: Body<'_>, t_max: f64) -> bool {
+        self.spend_once(1);
         let approx = ray.approx.as_ref().filter(|_| !self.tests_all);
         approx.is_some_and(|approx| body.reach().is_surely_missed(approx, t_max))
     }
@@ -131,6 +132,7 @@ impl Attempt<'_> {
     /// `light_idx`: the light that the ray ends in at t = 1, if it does. A surface that holds the light has a root there,
     /// which is left out by algebra.
     fn hits(&self, ray: &Ray, body_idx: usize, light_idx: Option<usize>) -> Decided<Vec<Hit>> {
+        self.spend(WORK_OF_TEST);
         let body = self.bodies[body_idx];
         let quadric = body.quadric(self.scene.arithmetic);
         let mut hits = Vec::new();

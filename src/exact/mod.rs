@@ -68,6 +68,9 @@ pub struct Pixel {
     pub open_ties: Ties,
     /// The precision that gave the pixel.
     pub bits: usize,
+    /// What it took, all precisions together, in units of very roughly 50 ns: counted, not timed, so that it is the same
+    /// on every machine.
+    pub work: u64,
 }
 
 /// Renders one scene exactly.
@@ -80,7 +83,8 @@ pub struct Renderer<'p> {
     /// The scene at each precision of the ladder, once it was asked for.
     scenes: Vec<OnceLock<Scene>>,
     tests_all: bool,
-    asks_algebra: bool,
+    /// The first place on the ladder where algebra is asked; at the last it always is, unless this is beyond the ladder.
+    algebra_from: usize,
 }
 
 impl<'p> Renderer<'p> {
@@ -103,7 +107,7 @@ impl<'p> Renderer<'p> {
         assert!(!ladder.is_empty(), "no precision");
         let scenes = ladder.iter().map(|_| OnceLock::new()).collect();
         let (settings, ladder) = (settings.clone(), ladder.to_vec());
-        Self { view, settings, ladder, bodies: OnceLock::new(), scenes, tests_all: false, asks_algebra: true }
+        Self { view, settings, ladder, bodies: OnceLock::new(), scenes, tests_all: false, algebra_from: 1 }
     }
 
     /// Tests every ray against every body, without the filter in binary64.
@@ -115,7 +119,14 @@ impl<'p> Renderer<'p> {
     /// Leaves to precision alone what algebra would decide.
     #[must_use]
     pub fn without_algebra(self) -> Self {
-        Self { asks_algebra: false, ..self }
+        Self { algebra_from: usize::MAX, ..self }
+    }
+
+    /// Prepares for pixels that as many bits as the first of the ladder have left open: those with ties, as a rule. Algebra
+    /// is asked at once.
+    #[must_use]
+    pub fn for_open_pixels(view: SceneView<'p>, settings: &Settings) -> Self {
+        Self { algebra_from: 0, ..Self::new(view, settings) }
     }
 
     /// Renders one pixel.
@@ -125,13 +136,18 @@ impl<'p> Renderer<'p> {
     #[must_use]
     pub fn pixel(&self, column: u32, row: u32) -> Pixel {
         assert!(column < self.settings.width && row < self.settings.height, "a pixel outside the image");
+        let mut work = 0;
         for (i, &bits) in self.ladder.iter().enumerate() {
             let is_last = i + 1 == self.ladder.len();
             // Most pixels need no algebra, and remembering how numbers were made takes time.
-            let arithmetic = Arithmetic { bits, has_algebra: self.asks_algebra && (i > 0 || is_last) };
+            let has_algebra = i >= self.algebra_from || is_last && self.algebra_from < usize::MAX;
+            let arithmetic = Arithmetic { bits, has_algebra };
             let scene = self.scenes[i].get_or_init(|| Scene::new(&self.view, &self.settings, arithmetic));
-            if let Ok(pixel) = Attempt::new(self, scene, is_last).pixel(column, row) {
-                return pixel;
+            let attempt = Attempt::new(self, scene, is_last);
+            let pixel = attempt.pixel(column, row);
+            work += attempt.work();
+            if let Ok(pixel) = pixel {
+                return Pixel { work, ..pixel };
             }
         }
         unreachable!("the last precision leaves nothing open")

@@ -22,6 +22,11 @@ impl Arithmetic {
         Real { ball, expression }
     }
 
+    /// Returns the same without memory: for what nothing is decided by.
+    pub fn forgetful(self) -> Self {
+        Self { has_algebra: false, ..self }
+    }
+
     /// Makes the vector of three numbers.
     pub fn vec3(self, values: [f64; 3]) -> [Real; 3] {
         values.map(|value| self.number(value))
@@ -54,6 +59,11 @@ impl Real {
     /// Makes a number of which nothing is known but the ball.
     fn unexplained(ball: Ball) -> Self {
         Self { ball, expression: None }
+    }
+
+    /// Returns the number without how it was made.
+    pub fn forget(&self) -> Self {
+        Self::unexplained(self.ball.clone())
     }
 
     pub fn expression(&self) -> Option<&Expression> {

@@ -47,6 +47,8 @@ pub struct Record {
     pub n_ties: u64,
     /// The first pixels with ties, row by row from the top, at most [`Record::MAX_LISTED`].
     pub ties: Vec<TiePlace>,
+    /// What all of them took: see [`Pixel::work`].
+    pub work: u64,
     /// The largest bound on the error of a channel of a pixel without open ties, in levels: of 255 c.
     pub largest_error: f64,
 }
@@ -58,6 +60,7 @@ impl Record {
     /// Adds a pixel.
     pub fn add(&mut self, column: u32, row: u32, pixel: &Pixel) {
         *self.n_pixels.entry(pixel.bits).or_default() += 1;
+        self.work += pixel.work;
         if pixel.open_ties.total() == 0 {
             self.largest_error = self.largest_error.max(pixel.error);
         } else {
@@ -84,12 +87,33 @@ impl Record {
         for (bits, n_pixels) in other.n_pixels {
             *self.n_pixels.entry(bits).or_default() += n_pixels;
         }
+        self.work += other.work;
         self.n_tied_pixels += other.n_tied_pixels;
         self.n_open_pixels += other.n_open_pixels;
         self.n_ties += other.n_ties;
         self.largest_error = self.largest_error.max(other.largest_error);
         self.ties.extend(other.ties);
         self.keep_first();
+    }
+
+    /// Tells whether the list of pixels with ties is complete.
+    #[must_use]
+    pub fn lists_all_ties(&self) -> bool {
+        self.n_tied_pixels == self.ties.len() as u64
+    }
+
+    /// Returns the record of pixels that another image takes over, of which `is_taken` tells by column and row: their ties
+    /// alone, as far as they are listed, for nothing is made anew.
+    #[must_use]
+    pub fn taken_over(&self, is_taken: impl Fn(u32, u32) -> bool) -> Self {
+        let ties: Vec<_> = self.ties.iter().filter(|place| is_taken(place.column, place.row)).copied().collect();
+        Self {
+            n_tied_pixels: ties.len() as u64,
+            n_open_pixels: ties.iter().filter(|place| place.open.total() > 0).count() as u64,
+            n_ties: ties.iter().map(|place| u64::from(place.n_ties())).sum(),
+            ties,
+            ..Self::default()
+        }
     }
 
     /// Returns the number of pixels that were made.

@@ -151,10 +151,10 @@ pub struct Scene {
 impl Scene {
     /// Takes what a view shows.
     pub fn new(view: &SceneView<'_>, settings: &Settings, arithmetic: Arithmetic) -> Self {
-        let vec3 = |v: glam::DVec3| arithmetic.vec3(v.to_array());
+        let color = |v: glam::DVec3| arithmetic.forgetful().vec3(v.to_array());
         let lights = view.lights().iter().map(|light| Light {
-            color: vec3(light.color),
-            position: vec3(light.position),
+            color: color(light.color),
+            position: arithmetic.vec3(light.position.to_array()),
             position_exact: light.position.to_array(),
         });
         let (half_width, kappa) = arithmetic.half_width(view.fov_deg());
@@ -163,7 +163,7 @@ impl Scene {
             arithmetic,
             step: &half_width / &arithmetic.number(n_steps),
             kappa,
-            background: vec3(view.background()),
+            background: color(view.background()),
             lights: lights.collect(),
         }
     }

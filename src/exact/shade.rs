@@ -7,12 +7,12 @@
 use std::cmp::Ordering;
 
 use crate::exact::Part;
-use crate::exact::attempt::{Attempt, Decided, Undecided};
+use crate::exact::attempt::{Attempt, Decided, Undecided, WORK_OF_LIGHT};
 use crate::exact::intersect::{Hit, Ray};
 use crate::exact::real::Real;
 use crate::exact::scene::{Equation, Light, Surface};
 use crate::exact::tie::Tie;
-use crate::exact::vec3::{Vec3, add, divide, dot, negate, scale, sub};
+use crate::exact::vec3::{Vec3, add, divide, dot, forget, negate, scale, sub};
 
 /// A hit with what its shading needs: its point, and the normal turned against the ray.
 struct Meeting<'r> {
@@ -37,7 +37,7 @@ impl Attempt<'_> {
 
     fn shade(&self, ray: &Ray, hit: Hit, level: u32) -> Decided<Vec3> {
         let body = self.bodies[hit.body_idx];
-        let surface = Surface::new(&self.surfaces[body.surface_idx()], self.scene.arithmetic);
+        let surface = Surface::new(&self.surfaces[body.surface_idx()], self.scene.arithmetic.forgetful());
         let mut p = ray.at(&hit.t);
         let mut n = match hit.cap {
             Some(cap) => {
@@ -82,7 +82,8 @@ impl Attempt<'_> {
     /// Part B: c = Ca + Σ Cl · (Cd · (n·L) + Cs · (n·H)^P) + Krefl · colour(reflected ray).
     fn shade_part_b(&self, surface: &Surface, meeting: &Meeting<'_>) -> Decided<Vec3> {
         let Meeting { ray, on, p, n, level } = meeting;
-        let v = divide(&negate(&ray.dir), &dot(&ray.dir, &ray.dir).sqrt());
+        let dir = forget(&ray.dir);
+        let v = divide(&negate(&dir), &dot(&dir, &dir).sqrt());
         let mut color = surface.ambient.clone();
         for (light_idx, light) in self.scene.lights.iter().enumerate() {
             let share = match self.is_lit(meeting, light_idx) {
@@ -120,15 +121,17 @@ impl Attempt<'_> {
 
     /// Returns Cl · (Cd · (n·L) + Cs · (n·H)^P).
     fn share_of_light(&self, surface: &Surface, meeting: &Meeting<'_>, v: &Vec3, light: &Light) -> Vec3 {
-        let Meeting { p, n, .. } = meeting;
-        let to_light = sub(&light.position, p);
+        self.spend(WORK_OF_LIGHT);
+        // Nothing is decided by this.
+        let [p, n, light_position] = [&meeting.p, &meeting.n, &light.position].map(forget);
+        let to_light = sub(&light_position, &p);
         let distance = dot(&to_light, &to_light).sqrt();
-        let n_dot_l = &dot(n, &to_light) / &distance;
+        let n_dot_l = &dot(&n, &to_light) / &distance;
         let highlight = if surface.specular.iter().all(Real::is_zero) {
             self.number(0.0)
         } else {
             let l_plus_v = add(&divide(&to_light, &distance), v);
-            let n_dot_h = &dot(n, &l_plus_v) / &dot(&l_plus_v, &l_plus_v).sqrt();
+            let n_dot_h = &dot(&n, &l_plus_v) / &dot(&l_plus_v, &l_plus_v).sqrt();
             n_dot_h.pow(surface.shininess)
         };
         std::array::from_fn(|axis| {

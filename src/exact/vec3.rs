@@ -28,3 +28,8 @@ pub fn dot(a: &Vec3, b: &Vec3) -> Real {
 pub fn negate(a: &Vec3) -> Vec3 {
     [-&a[0], -&a[1], -&a[2]]
 }
+
+/// Returns the vector without how its components were made.
+pub fn forget(a: &Vec3) -> Vec3 {
+    [a[0].forget(), a[1].forget(), a[2].forget()]
+}

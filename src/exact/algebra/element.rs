@@ -102,6 +102,11 @@ impl Field {
         self.work = 0;
     }
 
+    /// Returns the work that the question has cost so far, in word products.
+    pub fn work(&self) -> usize {
+        self.work
+    }
+
     /// Returns κ.
     pub fn kappa(&self) -> Element {
         match self.kappa {

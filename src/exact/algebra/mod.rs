@@ -32,12 +32,16 @@ pub use expression::{Expression, Made};
 
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
+use std::rc::Rc;
 
 use crate::exact::algebra::element::{Element, Field};
 use crate::exact::ball::Ball;
 
 /// After so many questions without an answer a pixel asks no more.
 const MAX_FAILURES: u32 = 8;
+
+/// Word products, or thereabouts, that take as long as a unit of work.
+const WORD_PRODUCTS_A_UNIT: u64 = 8;
 
 /// The one number of a scene that need not be a binary fraction: k = tan(fov/2) is this, or a third of it for 60 degrees.
 #[derive(Clone, Debug)]
@@ -65,14 +69,15 @@ pub struct Algebra {
     /// What denominators are made of, all above 0.
     factors: Vec<Element>,
     /// What was evaluated so far, by its identity, which is kept alive.
-    known: BTreeMap<usize, (Expression, Fraction)>,
+    known: BTreeMap<usize, (Expression, Rc<Fraction>)>,
     n_failures: u32,
+    work: usize,
 }
 
 impl Algebra {
     /// Begins with what is known of κ.
     pub fn new(kappa: Kappa) -> Self {
-        Self { field: Field::new(kappa), factors: Vec::new(), known: BTreeMap::new(), n_failures: 0 }
+        Self { field: Field::new(kappa), factors: Vec::new(), known: BTreeMap::new(), n_failures: 0, work: 0 }
     }
 
     /// Returns the sign of a number, proved; `None` when that is too much work.
@@ -83,28 +88,35 @@ impl Algebra {
         self.field.rest();
         let sign = self.evaluate(expression).and_then(|fraction| self.field.sign(&fraction.numerator));
         self.n_failures += u32::from(sign.is_none());
+        self.work += self.field.work();
         sign
     }
 
+    /// Returns the work so far, in units of [`Pixel::work`](crate::exact::Pixel::work).
+    pub fn work(&self) -> u64 {
+        self.work as u64 / WORD_PRODUCTS_A_UNIT
+    }
+
     /// Evaluates an expression; `None` when that is too much work, or it divides by 0 or takes the root of less.
-    fn evaluate(&mut self, expression: &Expression) -> Option<Fraction> {
+    fn evaluate(&mut self, expression: &Expression) -> Option<Rc<Fraction>> {
         if let Some((_, fraction)) = self.known.get(&expression.identity()) {
-            return Some(fraction.clone());
+            return Some(Rc::clone(fraction));
         }
         let fraction = match expression.made() {
-            Made::Number(value) => return Some(Fraction::whole(Element::number(*value))),
-            Made::Kappa => return Some(Fraction::whole(self.field.kappa())),
+            Made::Number(value) => return Some(Rc::new(Fraction::whole(Element::number(*value)))),
+            Made::Kappa => return Some(Rc::new(Fraction::whole(self.field.kappa()))),
             Made::Sum(a, b) => self.sum(a, b, false)?,
             Made::Difference(a, b) => self.sum(a, b, true)?,
             Made::Product(a, b) => {
                 let [a, b] = [self.evaluate(a)?, self.evaluate(b)?];
                 let numerator = self.field.product(&a.numerator, &b.numerator)?;
-                Fraction { numerator, denominator: product_of_powers(a.denominator, &b.denominator) }
+                Fraction { numerator, denominator: product_of_powers(a.denominator.clone(), &b.denominator) }
             }
             Made::Quotient(a, b) => self.quotient(a, b)?,
             Made::Root(a) => self.root(a)?,
         };
-        self.known.insert(expression.identity(), (expression.clone(), fraction.clone()));
+        let fraction = Rc::new(fraction);
+        self.known.insert(expression.identity(), (expression.clone(), Rc::clone(&fraction)));
         Some(fraction)
     }
 
@@ -135,14 +147,14 @@ impl Algebra {
     /// (n/d) / (m/e) = n·e / (d·m), where factors that d and e share fall out.
     fn quotient(&mut self, a: &Expression, b: &Expression) -> Option<Fraction> {
         let [a, b] = [self.evaluate(a)?, self.evaluate(b)?];
-        let mut numerator = a.numerator;
-        let mut denominator = a.denominator;
-        for (factor, exponent) in b.denominator {
-            let shared = denominator.get(&factor).map_or(0, |present| exponent.min(*present));
+        let mut numerator = a.numerator.clone();
+        let mut denominator = a.denominator.clone();
+        for (factor, &exponent) in &b.denominator {
+            let shared = denominator.get(factor).map_or(0, |present| exponent.min(*present));
             for _ in shared..exponent {
-                numerator = self.field.product(&numerator, &self.factors[factor])?;
+                numerator = self.field.product(&numerator, &self.factors[*factor])?;
             }
-            if let Some(present) = denominator.get_mut(&factor) {
+            if let Some(present) = denominator.get_mut(factor) {
                 *present -= shared;
             }
         }
@@ -154,7 +166,7 @@ impl Algebra {
                 Some(Fraction { numerator: numerator.negated(), denominator })
             }
             Ordering::Greater => {
-                *denominator.entry(self.factor(b.numerator)).or_default() += 1;
+                *denominator.entry(self.factor(b.numerator.clone())).or_default() += 1;
                 Some(Fraction { numerator, denominator })
             }
         }
@@ -162,7 +174,7 @@ impl Algebra {
 
     /// √(n / Π fᵉ) = √(n·Π f) / Π f^⌈e/2⌉, with the product on the right over the factors of odd exponent.
     fn root(&mut self, a: &Expression) -> Option<Fraction> {
-        let Fraction { numerator: mut radicand, mut denominator } = self.evaluate(a)?;
+        let Fraction { numerator: mut radicand, mut denominator } = Fraction::clone(&*self.evaluate(a)?);
         match self.field.sign(&radicand)? {
             Ordering::Less => return None,
             Ordering::Equal => return Some(Fraction::whole(Element::number(0.0))),
