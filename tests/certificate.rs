@@ -80,7 +80,7 @@ fn a_certificate_says_how_every_pixel_was_settled() {
 #[test]
 fn ties_are_in_the_certificate_with_their_places() {
     let folder = Folder::with_scene(&scene("a.png"));
-    folder.clisc(&["run", "a.cli", "--precision", "certified", "--certificate", "proof.json"]);
+    folder.clisc(&["run", "a.cli", "--certificate", "proof.json"]);
     let document = certificate(&folder, "proof.json");
     let image = &document["images"][0];
     assert_eq!(image["proved"], true);

@@ -10,11 +10,11 @@ mod support;
 use std::fs;
 use std::path::Path;
 
-use clisc::exact::{Pixel, Renderer};
+use clisc::exact::{Pixel, Record, Renderer};
 use clisc::exec::{CancellationToken, MemorySink, Options, WriteReport, exact_settings, execute};
 use clisc::image::{RgbImage, decode_png};
 use clisc::ir::{SceneView, Valid};
-use clisc::plan::{Pass, Passes, Precision, Settings, Size, plan};
+use clisc::plan::{ExactWork, Pass, Passes, Precision, Settings, Size, plan};
 use clisc::trace::{Fault, Tracer};
 use rayon::prelude::*;
 
@@ -23,7 +23,7 @@ use support::views::{compile, last_view};
 
 fn sized(width: u32, height: u32) -> Settings {
     let size = Size::new(width, height).expect("a size within the limits");
-    Settings { size, precision: Precision::Certified, ..Settings::default() }
+    Settings { size, precision: Precision::Certified, exact_work: ExactWork::Unlimited, ..Settings::default() }
 }
 
 /// Executes a program; returns its reports, and its images by their names.
@@ -89,10 +89,9 @@ fn every_scene_under_stress_is_certified() {
 #[test]
 fn what_the_tracer_cannot_scale_is_left_to_exact() {
     // The speck is 10⁻³⁰⁰ of the ball behind it: scaled to its size it would be nothing.
-    let text = "light 1 1 1 0 0 5e-150\nsurface .1 .1 .1 .5 .5 .5 0 0 0 1 0\nsphere 0 0 -4e-150 1e-150\n\
-                surface .1 0 0 .9 0 0 0 0 0 1 .5\nsphere 0 0 -4e150 1e150\nwrite i.png\n";
-    assert_is_certified("speck before a giant", text, &sized(16, 12));
-    let (report, image) = run(&compile(text), &sized(16, 12)).pop().expect("an image");
+    let text = format!("{SPECK}write i.png\n");
+    assert_is_certified("speck before a giant", &text, &sized(16, 12));
+    let (report, image) = run(&compile(&text), &sized(16, 12)).pop().expect("an image");
     assert_eq!(report.proof.map(|proof| proof.exact.n_pixels()), Some(16 * 12));
     assert_eq!(image.pixel(8, 6), [153; 3]);
 }
@@ -126,7 +125,7 @@ fn the_proof_of_a_copy_is_that_of_its_original() {
 }
 
 #[test]
-fn shared_pixels_are_counted_and_ties_are_never_shared() {
+fn shared_pixels_are_counted_and_their_ties_are_listed() {
     let plain = "light 1 1 1 0 0 5\nsurface 0 .2 0 .4 .1 .1 0 0 0 1 0\nsphere -.77 .1 -4.3 .71\nwrite a.png\n\
                  sphere 1.1 0 -5 .3\nwrite b.png\n";
     let images = run(&compile(plain), &sized(200, 150));
@@ -136,11 +135,50 @@ fn shared_pixels_are_counted_and_ties_are_never_shared() {
     assert_eq!(all, 200 * 150);
 
     let tied = format!("{TOUCHED}write a.png\nsphere 1.6 0 -5 .1\nwrite b.png\n");
-    let images = run(&compile(&tied), &sized(300, 300));
-    let proofs: Vec<_> =
-        images.iter().map(|(report, _)| report.proof.as_ref().expect("everything is proved")).collect();
-    assert!(proofs[0].exact.n_tied_pixels > 0 && proofs[1].n_shared == 0, "{proofs:?}");
-    assert_eq!(proofs[0].exact.ties, proofs[1].exact.ties);
+    let passes = Passes::all().without(Pass::Writes);
+    let [shared, traced] = [sized(300, 300), Settings { passes, ..sized(300, 300) }].map(|settings| {
+        let mut images = run(&compile(&tied), &settings);
+        images.pop().and_then(|(report, _)| report.proof).expect("everything is proved")
+    });
+    assert!(shared.n_shared > 0 && traced.n_shared == 0 && shared.exact.n_tied_pixels > 0, "{shared:?}");
+    assert_eq!(shared.exact.ties, traced.exact.ties);
+    let sums = |record: &Record| (record.n_tied_pixels, record.n_open_pixels, record.n_ties);
+    assert_eq!(sums(&shared.exact), sums(&traced.exact));
+}
+
+/// A scene that the tracer cannot scale: `exact` makes every pixel.
+const SPECK: &str = "light 1 1 1 0 0 5e-150\nsurface .1 .1 .1 .5 .5 .5 0 0 0 1 0\nsphere 0 0 -4e-150 1e-150\n\
+                     surface .1 0 0 .9 0 0 0 0 0 1 .5\nsphere 0 0 -4e150 3.9e150\n";
+
+/// Checks that exact work reaches its limit in the first `write` of a program and in those that share pixels with it, on any
+/// number of threads, and that their images are then those of binary64 altogether.
+fn assert_is_beyond_the_limit(text: &str, settings: &Settings) {
+    let program = compile(text);
+    let plain = run(&program, &Settings { precision: Precision::F64, ..settings.clone() });
+    for n_threads in [1, 3] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(n_threads).build().expect("threads");
+        let limited = pool.install(|| run(&program, settings));
+        for ((report, image), (plain_report, plain_image)) in limited.iter().zip(&plain) {
+            assert_eq!((report.precision, &report.proof, report.crc32), (Precision::F64, &None, None));
+            assert_eq!(report.n_bytes, plain_report.n_bytes);
+            assert!(image == plain_image, "{n_threads} threads: {}", report.name);
+        }
+    }
+}
+
+#[test]
+fn an_image_that_takes_too_much_exact_work_is_made_in_binary64_altogether() {
+    let limited = |width, height| Settings { exact_work: ExactWork::Limited, ..sized(width, height) };
+    // So many pixels that it is known beforehand.
+    assert_is_beyond_the_limit(
+        &format!("{SPECK}write a.png\nwrite b.png\nsphere 0 0 9 1\nwrite c.png\n"),
+        &limited(540, 540),
+    );
+    // So much work that it is seen on the way.
+    assert_is_beyond_the_limit(&format!("{SPECK}write a.png\n"), &limited(280, 280));
+    // So little that nothing happens.
+    let (report, _) = run(&compile(&format!("{SPECK}write a.png\n")), &limited(16, 12)).pop().expect("an image");
+    assert!(report.precision == Precision::Certified && report.proof.is_some_and(|proof| proof.is_complete()));
 }
 
 #[test]

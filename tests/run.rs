@@ -50,6 +50,29 @@ fn the_image_is_that_of_the_library() {
 }
 
 #[test]
+fn pixels_are_proved_unless_that_takes_too_long() {
+    let folder = Folder::with_scene(&scene("a.png"));
+    let precision = |args: &[&str]| {
+        let call = folder.clisc(&[&["run", "a.cli", "--stats=json", "--threads", "2"], args].concat());
+        assert_code(&call, 0);
+        let stats: serde_json::Value = serde_json::from_str(&call.stdout).expect("a document");
+        (stats["scenes"][0]["images"][0]["precision"].as_str().expect("a name").to_owned(), call.stderr)
+    };
+    assert_eq!(precision(&["--size", "60x60"]), ("certified".to_owned(), String::new()));
+    assert_eq!(precision(&["--size", "60x60", "--precision", "f64"]).0, "f64");
+    // Lengths that differ so much that nothing but arbitrary precision holds, in every pixel of a large image.
+    folder.put(
+        "a.cli",
+        "surface 1 1 1 0 0 0 0 0 0 1 0\nfov 60\nsphere 0 0 -4e-150 1e-150\nsphere 0 0 -4e150 1e150\nwrite a.png\n",
+    );
+    let (precision_of_far, warning) = precision(&["--size", "540x540"]);
+    assert_eq!(precision_of_far, "f64");
+    assert_says(&warning, "warning: `a.png` is made in f64");
+    assert_eq!(precision(&["--size", "540x540", "--precision", "f64"]), ("f64".to_owned(), String::new()));
+    assert_eq!(precision(&["--size", "8x6", "--precision", "certified"]), ("certified".to_owned(), String::new()));
+}
+
+#[test]
 fn options_of_the_render_reach_it() {
     let folder = Folder::with_scene(&scene("a.png"));
     let mut images = Vec::new();

@@ -5,7 +5,14 @@ from html import escape
 
 WIDTH, HEIGHT = 720, 460
 LEFT, RIGHT, TOP, BOTTOM = 70, 150, 40, 60
-COLOURS = {"clisc": "#c0392b", "clisc-f32": "#e67e22", "embree": "#2563a8", "brute": "#2e8b57", "Tachyon": "#7d5ba6"}
+COLOURS = {
+    "clisc": "#c0392b",
+    "clisc-f32": "#e67e22",
+    "clisc-f64": "#c2a878",
+    "embree": "#2563a8",
+    "brute": "#2e8b57",
+    "Tachyon": "#7d5ba6",
+}
 
 
 class Axis:

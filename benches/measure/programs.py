@@ -117,6 +117,7 @@ def programs(clisc, peers, converters):
     found = [Clisc("clisc", clisc)]
     if "--precision" in subprocess.run([clisc, "run", "--help"], capture_output=True, text=True, check=True).stdout:
         found.append(Clisc("clisc-f32", clisc, ["--precision", "f32"]))
+        found.append(Clisc("clisc-f64", clisc, ["--precision", "f64"]))
     if peers:
         found.append(Native("embree", peers / "embree", "-inc", 10**9))
         # Without a tree each ray tests each object: beyond a thousand the answer is known, and long in coming.

@@ -6,7 +6,7 @@
 
 use crate::exec::Proof;
 use crate::ir::{Command, Registers, Valid};
-use crate::plan::{Changes, Pass, Plan, Settings, TileMask};
+use crate::plan::{Changes, Pass, Plan, Precision, Settings, TileMask};
 use crate::trace::Canvas;
 
 /// The most bytes of files that are kept, and of pixels.
@@ -18,8 +18,8 @@ pub(super) struct Earlier {
     /// What each `write` of the program sees.
     views: Vec<Registers>,
     files: Vec<File>,
-    /// What stands behind the pixels of each image so far.
-    proofs: Vec<Option<Proof>>,
+    /// What stands behind the pixels of each image so far, and the arithmetic that gave them.
+    proofs: Vec<(Precision, Option<Proof>)>,
     /// The last image that was traced whole, or in part upon another.
     pixels: Option<(usize, Canvas)>,
 }
@@ -62,13 +62,18 @@ impl Earlier {
     }
 
     /// Keeps what stands behind the pixels of the next `write`.
-    pub fn keep_proof(&mut self, proof: Option<Proof>) {
-        self.proofs.push(proof);
+    pub fn keep_proof(&mut self, precision: Precision, proof: Option<Proof>) {
+        self.proofs.push((precision, proof));
+    }
+
+    /// Returns the arithmetic that gave the pixels of an earlier `write`.
+    pub fn precision(&self, write_idx: usize) -> Precision {
+        self.proofs[write_idx].0
     }
 
     /// Returns what stands behind the pixels of an earlier `write`.
     pub fn proof(&self, write_idx: usize) -> Option<&Proof> {
-        self.proofs[write_idx].as_ref()
+        self.proofs[write_idx].1.as_ref()
     }
 
     /// Keeps the file of a `write`.
@@ -92,11 +97,21 @@ impl Earlier {
         Some((file.write_idx, &file.bytes))
     }
 
+    /// Forgets the pixels so far.
+    pub fn forget_pixels(&mut self) {
+        self.pixels = None;
+    }
+
     /// Returns the pixels so far, for an image to be traced upon, with its `write` and the tiles that may differ.
     pub fn shared_pixels(&self, plan: &Plan<'_>) -> Option<(usize, TileMask)> {
         let (write_idx, _) = self.pixels.as_ref()?;
-        if self.proof(*write_idx).is_some_and(Proof::has_ties) {
-            // Which of its ties lie in the pixels to be shared is not known, as not all are listed.
+        let may_share = match self.proof(*write_idx) {
+            // Which of its ties lie in the pixels to be shared must be known.
+            Some(proof) => proof.exact.lists_all_ties(),
+            // It is not proved, and this image is to be.
+            None => !plan.settings.precision.is_proved(),
+        };
+        if !may_share {
             return None;
         }
         match plan.changes_since(&self.views[*write_idx]) {

@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
 use crate::exact::{self, Record, Renderer, TiePlace};
+use crate::exec::limit::Limit;
 use crate::ir::SceneView;
 use crate::plan::{Part, Precision, SampleAt, Settings, is_within_range, plan};
 use crate::trace::{Counts, Referee, Tracer};
@@ -29,7 +30,8 @@ pub fn exact_settings(settings: &Settings) -> exact::Settings {
 }
 
 /// Renders a whole image into `rgb`, 3 bytes a pixel, row by row from the top, in the arithmetic that the settings ask for, on
-/// all threads of the current rayon pool, until `is_cancelled` says so; what is then in `rgb` is no image.
+/// all threads of the current rayon pool, until `is_cancelled` says so; what is then in `rgb` is no image. Exact work is not
+/// limited here.
 ///
 /// # Panics
 /// When `rgb` does not hold exactly the pixels of the image.
@@ -39,7 +41,8 @@ pub fn render_whole(
     rgb: &mut [u8],
     is_cancelled: &(dyn Fn() -> bool + Sync),
 ) -> Counts {
-    let exactly = Exactly::new(view, settings);
+    let limit = Limit::none();
+    let exactly = Exactly::new(view, settings, &limit);
     let rows = 0..settings.size.height();
     if exactly.makes_all(view, settings) {
         return exactly.render_rows(rows, rgb, is_cancelled);
@@ -52,14 +55,20 @@ pub fn render_whole(
 /// The exact renderer of one image, and what it has found.
 #[derive(Debug)]
 pub(super) struct Exactly<'p> {
+    /// Makes all pixels.
     renderer: Renderer<'p>,
+    /// Makes those that double-double leaves open.
+    referee: Renderer<'p>,
     record: Mutex<Record>,
+    limit: &'p Limit,
 }
 
 impl<'p> Exactly<'p> {
-    /// Prepares an image; costs nothing until a pixel is asked for.
-    pub fn new(view: SceneView<'p>, settings: &Settings) -> Self {
-        Self { renderer: Renderer::new(view, &exact_settings(settings)), record: Mutex::default() }
+    /// Prepares an image; costs nothing until a pixel is asked for. What it takes is spent of `limit`.
+    pub fn new(view: SceneView<'p>, settings: &Settings, limit: &'p Limit) -> Self {
+        let settings = exact_settings(settings);
+        let (renderer, referee) = (Renderer::new(view, &settings), Renderer::for_open_pixels(view, &settings));
+        Self { renderer, referee, record: Mutex::default(), limit }
     }
 
     /// Tells whether it is to make every pixel: when asked to, or where lengths differ too much for the tracer's numbers, so
@@ -76,8 +85,14 @@ impl<'p> Exactly<'p> {
     pub fn render_rows(&self, rows: Range<u32>, rgb: &mut [u8], is_cancelled: &(dyn Fn() -> bool + Sync)) -> Counts {
         let record = self.renderer.render_rows(rows, rgb, is_cancelled);
         let counts = Counts { exact_pixels: record.n_pixels(), ties: record.n_ties, ..Counts::default() };
+        self.limit.spend(record.work);
         self.note(|total| total.merge(record));
         counts
+    }
+
+    /// Takes over what was found in pixels of an earlier image.
+    pub fn take_over(&self, record: Record) {
+        self.note(|total| total.merge(record));
     }
 
     /// Returns what was found, which does not depend on the order in which pixels were asked for.
@@ -92,7 +107,8 @@ impl<'p> Exactly<'p> {
 
 impl Referee for Exactly<'_> {
     fn settle(&self, column: u32, row: u32) -> ([u8; 3], u32) {
-        let pixel = self.renderer.pixel(column, row);
+        let pixel = self.referee.pixel(column, row);
+        self.limit.spend(pixel.work);
         self.note(|record| record.add(column, row, &pixel));
         (pixel.rgb, TiePlace::of(column, row, &pixel).map_or(0, |place| place.n_ties()))
     }

@@ -12,6 +12,7 @@ mod cancel;
 mod earlier;
 mod exactly;
 mod in_order;
+mod limit;
 mod name;
 mod observe;
 mod painter;
@@ -32,6 +33,7 @@ use std::io;
 
 use crate::diag::Diagnostic;
 use crate::exec::earlier::Earlier;
+use crate::exec::limit::Limit;
 use crate::exec::write::Write;
 use crate::ir::{Command, Registers, SceneView, Valid};
 use crate::plan::Settings;
@@ -103,7 +105,8 @@ pub fn execute<S: Sink>(program: &Valid, options: Options<'_>, sink: &mut S) -> 
         registers.step(command);
         if let Command::Write(name) = command {
             let view = SceneView::new(program, registers);
-            let write = Write { program, command_idx: idx, write_idx: reports.len(), name, options };
+            let limit = Limit::new(options.settings);
+            let write = Write { program, command_idx: idx, write_idx: reports.len(), name, options, limit: &limit };
             reports.push(write.run(view, &mut earlier, sink)?);
         }
     }

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use crate::exec::Proof;
-use crate::plan::{Savings, Size};
+use crate::plan::{Precision, Savings, Size};
 use crate::trace::Counts;
 
 /// Watches an execution. Any thread of the pool may call it, but events come one at a time and in order; `()` watches
@@ -79,6 +79,11 @@ pub struct WriteReport {
     pub name: String,
     /// Pixels of the image.
     pub size: Size,
+    /// The arithmetic that gave its pixels: that of the settings, or [`Precision::F64`] where [`ExactWork::Limited`] was not
+    /// enough.
+    ///
+    /// [`ExactWork::Limited`]: crate::plan::ExactWork::Limited
+    pub precision: Precision,
     /// Length of the file.
     pub n_bytes: u64,
     /// Where its pixels come from.

@@ -12,9 +12,9 @@ pub struct Proof {
     pub n_binary64: u64,
     /// Pixels that double-double and its bounds proved.
     pub n_double_double: u64,
-    /// Pixels that arbitrary precision made, by their bits, and their ties: all pixels but those with open ties are proved.
+    /// Pixels that arbitrary precision made, by their bits, and all ties: every pixel but those with open ties is proved.
     pub exact: Record,
-    /// Pixels taken from an earlier image of the same program, which is proved by itself and has no ties.
+    /// Pixels taken from an earlier image of the same program, whose proof holds for them; their ties are listed here too.
     pub n_shared: u64,
     /// The largest bound on the error of a channel that was rounded, in levels: of 255 c. What a channel loses by being
     /// clamped for sure does not count.
@@ -46,10 +46,5 @@ impl Proof {
     #[must_use]
     pub fn is_complete(&self) -> bool {
         self.exact.n_open_pixels == 0
-    }
-
-    /// Tells whether some pixel has a tie, be it proved or open.
-    pub(super) fn has_ties(&self) -> bool {
-        self.exact.n_tied_pixels > 0
     }
 }

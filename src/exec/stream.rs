@@ -105,7 +105,7 @@ impl Write<'_> {
             return self.check_cancelled();
         }
         pixels.resize(bands.rgb_bytes(&rows), 0);
-        let is_cancelled = || self.options.cancellation.is_cancelled();
+        let is_cancelled = || self.is_cancelled();
         (band.counts, band.trace_time) = self.timed(|| painter.render_band(rows, pixels, &is_cancelled));
         self.check_cancelled()?;
         ((), band.encode_time) = self.timed(|| bands.encode(band_idx, pixels, &mut band.encoded));
@@ -145,7 +145,7 @@ impl Write<'_> {
 
     /// Lets all threads trace some rows, but for bands that are proved to have one colour.
     fn render_piece(&self, painter: &Painter<'_, '_>, bands: &PngBands, rows: Range<u32>, rgb: &mut [u8]) -> Counts {
-        let is_cancelled = || self.options.cancellation.is_cancelled();
+        let is_cancelled = || self.is_cancelled();
         let at = |row: u32| bands.rgb_bytes(&(rows.start..row));
         let mut counts = Counts::default();
         let mut n_done = rows.start;

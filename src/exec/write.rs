@@ -5,28 +5,51 @@ use std::time::Duration;
 
 use crate::exec::earlier::Earlier;
 use crate::exec::exactly::Exactly;
+use crate::exec::limit::Limit;
 use crate::exec::painter::Painter;
 use crate::exec::{Event, ExecError, ImageRequest, Options, Origin, Proof, Sink, SinkError, WriteReport};
 use crate::image::Crc32;
 use crate::ir::{SceneView, Valid};
-use crate::plan::{Savings, plan};
+use crate::plan::{Precision, Savings, Settings, plan};
 use crate::trace::{Counts, Tracer};
 
 /// What is copied between two looks at the cancellation.
 const CHUNK_BYTES: usize = 1 << 20;
 
 /// One `write` on its way.
+#[derive(Clone, Copy)]
 pub(super) struct Write<'a> {
     pub program: &'a Valid,
     pub command_idx: usize,
     pub write_idx: usize,
     pub name: &'a str,
     pub options: Options<'a>,
+    /// How much `exact` may work for it.
+    pub limit: &'a Limit,
 }
 
 impl Write<'_> {
-    /// Renders the scene as it stands in `view`, and saves it; takes what it shares with `earlier` images from there.
+    /// Renders the scene as it stands in `view`, and saves it; takes what it shares with `earlier` images from there. If it
+    /// takes more exact work than it may, the image is made in plain [`Precision::F64`].
     pub fn run<S: Sink>(
+        &self,
+        view: SceneView<'_>,
+        earlier: &mut Earlier,
+        sink: &mut S,
+    ) -> Result<WriteReport, ExecError> {
+        let saved = self.run_within_limit(view, earlier, sink);
+        let is_passed = matches!(saved, Err(ExecError::Cancelled)) && self.limit.is_passed();
+        if !is_passed || self.options.cancellation.is_cancelled() {
+            return saved;
+        }
+        earlier.forget_pixels();
+        let settings = Settings { precision: Precision::F64, ..self.options.settings.clone() };
+        let (options, limit) = (Options { settings: &settings, ..self.options }, Limit::none());
+        Write { options, limit: &limit, ..*self }.run_within_limit(view, earlier, sink)
+    }
+
+    /// Does the work of [`Write::run`] within the limit; passing it is being cancelled.
+    fn run_within_limit<S: Sink>(
         &self,
         view: SceneView<'_>,
         earlier: &mut Earlier,
@@ -40,7 +63,7 @@ impl Write<'_> {
         let file = sink.create(&ImageRequest { name: self.name, size }).map_err(|error| self.sink_error(error))?;
         let mut report = self.new_report();
         let file = self.fill(view, earlier, file, &mut report)?;
-        earlier.keep_proof(report.proof.clone());
+        earlier.keep_proof(report.precision, report.proof.clone());
         let (saved, save_time) = self.timed(|| sink.commit(file));
         saved.map_err(|error| self.sink_error(error))?;
         report.save_time = save_time;
@@ -59,12 +82,15 @@ impl Write<'_> {
     ) -> Result<F, ExecError> {
         if let Some((write_idx, bytes)) = earlier.same_scene(self.write_idx) {
             report.proof = earlier.proof(write_idx).cloned();
+            report.precision = earlier.precision(write_idx);
             return self.copy(write_idx, bytes, file, report);
         }
         let settings = self.options.settings;
-        let exactly = Exactly::new(view, settings);
+        let exactly = Exactly::new(view, settings, self.limit);
         let referee = settings.precision.is_proved().then_some(&exactly);
         let file = if exactly.makes_all(view, settings) {
+            self.limit.expect_all(settings);
+            self.check_cancelled()?;
             let file = Kept::new(file, earlier.n_bytes_to_keep(self.write_idx));
             self.stream(&Painter::Exact(&exactly), file, report)?
         } else {
@@ -73,7 +99,7 @@ impl Write<'_> {
         if let Some(bytes) = file.bytes {
             earlier.keep_file(self.write_idx, bytes);
         }
-        if report.proof.is_none() {
+        if !matches!(report.origin, Origin::CopiedFrom { .. }) {
             let record = exactly.into_record();
             report.proof = Proof::new(settings.precision, report, record);
         }
@@ -95,11 +121,15 @@ impl Write<'_> {
         report.savings = plan.savings();
         if let Some((write_idx, bytes)) = earlier.same_image(&plan) {
             report.proof = earlier.proof(write_idx).cloned();
+            report.precision = earlier.precision(write_idx);
             return Ok(Kept::new(self.copy(write_idx, bytes, file, report)?, 0));
         }
         let file = Kept::new(file, earlier.n_bytes_to_keep(self.write_idx));
         let shared = earlier.shared_pixels(&plan);
         if let Some((write_idx, changed)) = &shared {
+            if let (Some(exactly), Some(proof)) = (referee, earlier.proof(*write_idx)) {
+                exactly.take_over(proof.exact.taken_over(|column, row| !changed.contains(column, row)));
+            }
             let n_pixels = u64::from(report.size.width()) * u64::from(report.size.height());
             report.origin = Origin::SharedWith {
                 write_idx: *write_idx,
@@ -152,6 +182,7 @@ impl Write<'_> {
             write_idx: self.write_idx,
             name: self.name.to_owned(),
             size: self.options.settings.size,
+            precision: self.options.settings.precision,
             n_bytes: 0,
             origin: Origin::Traced,
             savings: Savings::default(),
@@ -172,7 +203,12 @@ impl Write<'_> {
     }
 
     pub(super) fn check_cancelled(&self) -> Result<(), ExecError> {
-        if self.options.cancellation.is_cancelled() { Err(ExecError::Cancelled) } else { Ok(()) }
+        if self.is_cancelled() { Err(ExecError::Cancelled) } else { Ok(()) }
+    }
+
+    /// Tells whether the image is to be given up.
+    pub(super) fn is_cancelled(&self) -> bool {
+        self.options.cancellation.is_cancelled() || self.limit.is_passed()
     }
 
     fn sink_error(&self, error: SinkError) -> ExecError {

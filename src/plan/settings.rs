@@ -64,7 +64,6 @@ pub enum SampleAt {
 pub enum Precision {
     /// Binary64, and double-double where that does not decide a pixel. What that cannot decide either is taken for a tie;
     /// few scenes need more.
-    #[default]
     F64,
     /// A draft in binary32, about twice as fast: some channels are a level off, and some pixels at edges are wrong. Images
     /// that binary32 cannot start from, such as those with the eye inside an object, are traced as by
@@ -72,12 +71,24 @@ pub enum Precision {
     F32,
     /// As [`Precision::F64`], and arbitrary precision where double-double does not decide a pixel: every pixel but proved
     /// and listed ties is proved to be that of exact arithmetic.
+    #[default]
     Certified,
     /// Arbitrary precision for every pixel, by a renderer that shares nothing with the tracer; slow.
     Exact,
 }
 
 impl Precision {
+    /// Returns its name on the command line and in documents.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::F32 => "f32",
+            Self::F64 => "f64",
+            Self::Certified => "certified",
+            Self::Exact => "exact",
+        }
+    }
+
     /// Tells whether every pixel is proved, but for ties, which are counted and listed.
     #[must_use]
     pub const fn is_proved(self) -> bool {
@@ -86,6 +97,17 @@ impl Precision {
             Self::Certified | Self::Exact => true,
         }
     }
+}
+
+/// How much work in arbitrary precision an image of [`Precision::Certified`] may take.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ExactWork {
+    /// So much as ties along some rows and columns take. An image that takes more is made by [`Precision::F64`], all of it,
+    /// and its report says so. That depends on the scene and the settings alone.
+    #[default]
+    Limited,
+    /// As much as it takes.
+    Unlimited,
 }
 
 /// What a render is asked for.
@@ -103,6 +125,8 @@ pub struct Settings {
     pub max_level: u32,
     /// Which arithmetic traces pixels.
     pub precision: Precision,
+    /// How much a certified image may take.
+    pub exact_work: ExactWork,
     /// What may be skipped; no pixel depends on it but those of a draft.
     pub passes: Passes,
 }
@@ -123,7 +147,8 @@ impl Default for Settings {
             samples: 1,
             sample_at: SampleAt::Corner,
             max_level: 8,
-            precision: Precision::F64,
+            precision: Precision::default(),
+            exact_work: ExactWork::default(),
             passes: Passes::all(),
         }
     }

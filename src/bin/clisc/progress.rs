@@ -83,6 +83,8 @@ impl Observer for Progress {
     fn event(&self, event: &Event<'_>) {
         match *event {
             Event::Started { name, size, .. } if self.is_shown => {
+                // An image may start anew: in f64.
+                self.clear();
                 let image = Image { name: name.to_owned(), n_rows: size.height(), start: Instant::now(), bar: None };
                 *self.image.lock().unwrap_or_else(PoisonError::into_inner) = Some(image);
             }

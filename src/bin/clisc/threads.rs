@@ -8,7 +8,7 @@ use std::path::Path;
 
 use anyhow::Context;
 use clisc::ir::{Command, Valid};
-use clisc::plan::Settings;
+use clisc::plan::{Precision, Settings};
 
 /// Shorter text is read by one thread, in bytes.
 const SMALL_TEXT: u64 = 16 << 10;
@@ -69,6 +69,6 @@ fn is_small(program: &Valid, settings: &Settings) -> bool {
     let n_samples = side(settings.size.width()).saturating_mul(side(settings.size.height()));
     let per_sample = (program.spheres.len() + program.cylinders.len()) * (1 + program.lights.len());
     let has_mirrors = program.surfaces.as_slice().iter().any(|surface| surface.reflectance > 0.0);
-    let is_quick = !has_mirrors && !settings.precision.is_proved();
+    let is_quick = !has_mirrors && settings.precision != Precision::Exact;
     is_quick && n_samples.saturating_mul(n_images).saturating_mul(per_sample as usize) <= SMALL_WORK
 }

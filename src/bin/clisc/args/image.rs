@@ -2,7 +2,7 @@
 
 use clap::builder::PossibleValue;
 use clap::{Args, ValueEnum, value_parser};
-use clisc::plan::{self, Pass, Passes, Settings, Size};
+use clisc::plan::{self, ExactWork, Pass, Passes, Settings, Size};
 
 /// What an image is asked for.
 #[derive(Args, Debug)]
@@ -22,13 +22,15 @@ pub struct ImageArgs {
     /// The last level that is shaded: the eye ray has level 0, its reflection level 1, and so on; at most 65535.
     #[arg(long, value_name = "N", default_value_t = 8, value_parser = value_parser!(u32).range(..=i64::from(Settings::MAX_LEVEL)))]
     pub max_level: u32,
-    /// The arithmetic. f64: the right pixels, but where a scene needs numbers finer than double-double. certified: every
-    /// pixel is proved, in arbitrary precision where need be. exact: all of it in arbitrary precision, by another renderer;
-    /// slow. f32: a faster draft; of 270,000 channels of a 300x300 scene measured, at most 69 were wrong, mostly by one
-    /// level. --stats counts the pixels that were drafted; several samples, many objects or the eye inside an object
-    /// make it f64.
-    #[arg(long, value_enum, default_value_t, hide_possible_values = true, ignore_case = true)]
-    pub precision: Precision,
+    /// The arithmetic. certified: every pixel is proved, in arbitrary precision where need be; this is the default, as long
+    /// as an image takes no more exact work than ties along some of its rows and columns do, which depends on the scene
+    /// and the options alone. An image that takes more is made in f64, and a warning says so; asked for by name, certified
+    /// takes as long as it takes. f64: the right pixels, but where a scene needs numbers finer than double-double. exact:
+    /// all of it in arbitrary precision, by another renderer; slow. f32: a faster draft; of 270,000 channels of a 300x300
+    /// scene measured, at most 69 were wrong, mostly by one level. --stats counts the pixels that were drafted; several
+    /// samples, many objects or the eye inside an object make it f64.
+    #[arg(long, value_enum, hide_possible_values = true, ignore_case = true)]
+    pub precision: Option<Precision>,
     /// Do all the work that clisc can prove needless, or that of the passes named, separated by commas; for comparison,
     /// no pixel depends on it.
     #[arg(long, value_enum, value_name = "PASS", num_args = 0.., value_delimiter = ',', require_equals = true)]
@@ -44,7 +46,8 @@ impl ImageArgs {
             samples: self.samples,
             sample_at: self.sample_at.into(),
             max_level: self.max_level,
-            precision: self.precision.into(),
+            precision: self.precision.unwrap_or_default().into(),
+            exact_work: if self.precision.is_some() { ExactWork::Unlimited } else { ExactWork::Limited },
             passes: self.passes(),
         }
     }
@@ -107,9 +110,9 @@ pub enum Precision {
     /// Binary32: a draft.
     F32,
     /// Binary64, and double-double where needed.
-    #[default]
     F64,
     /// As f64, and arbitrary precision where needed: every pixel is proved.
+    #[default]
     Certified,
     /// Arbitrary precision everywhere.
     Exact,
@@ -118,12 +121,7 @@ pub enum Precision {
 impl Precision {
     /// Returns its name on the command line.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::F32 => "f32",
-            Self::F64 => "f64",
-            Self::Certified => "certified",
-            Self::Exact => "exact",
-        }
+        plan::Precision::from(self).name()
     }
 
     /// Returns its place among all, from the coarsest.

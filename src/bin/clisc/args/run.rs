@@ -25,8 +25,8 @@ pub struct RunArgs {
     /// Print times and counts; --stats=json prints one JSON document in place of the other results.
     #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, require_equals = true, default_missing_value = "table")]
     pub stats: Option<StatsFormat>,
-    /// Say in a JSON file what stands behind the pixels of the images saved: how each was proved, and where ties are. For
-    /// --precision certified and exact; saved whole or not at all.
+    /// Say in a JSON file what stands behind the pixels of the images saved: how each was proved, and where ties are. Takes
+    /// as long as that takes. For --precision certified and exact; saved whole or not at all.
     #[arg(long, value_name = "FILE")]
     pub certificate: Option<PathBuf>,
     /// Print nothing but errors, and the --stats asked for.
@@ -47,7 +47,7 @@ Examples:
   clisc run i1.cli --samples 4 --sample-at centre
   clisc run i1.cli --stats=json --quiet          times and counts for other programs
   clisc run i1.cli --no-skip=shadows,tiles       the same image without two of the shortcuts
-  clisc run i1.cli --precision certified --certificate proof.json
+  clisc run i1.cli --certificate proof.json      and what stands behind its pixels
   clisc run - < i1.cli                           the scene from standard input
 
 A scene can write only below the folder of --out-dir. An image is saved whole or not at all.";

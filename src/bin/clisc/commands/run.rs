@@ -14,10 +14,10 @@ use anyhow::{Context, bail};
 use clisc::diag::Diagnostic;
 use clisc::diag::render::{Color, render_human};
 use clisc::diag::words::counted;
-use clisc::exec::{CancellationToken, ExecError, Options, check_names, execute};
+use clisc::exec::{CancellationToken, ExecError, Options, WriteReport, check_names, execute};
 use clisc::ir::{self, Command, Valid};
 use clisc::lint::{Options as LintOptions, leave_out_allowed};
-use clisc::plan::Settings;
+use clisc::plan::{ExactWork, Settings};
 use clisc::source::Source;
 
 use self::certificate::Certificate;
@@ -32,7 +32,10 @@ use crate::{input, print};
 
 /// Renders scenes and saves their images. A fault in one scene does not keep the others from being rendered.
 pub fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
-    let settings = args.image.settings();
+    let mut settings = args.image.settings();
+    if args.certificate.is_some() {
+        settings.exact_work = ExactWork::Unlimited;
+    }
     if args.certificate.is_some() && !settings.precision.is_proved() {
         bail!("--certificate needs --precision certified or exact: nothing else proves every pixel");
     }
@@ -106,6 +109,7 @@ impl Session<'_> {
         let reporter = Reporter::new(self.args);
         let ended = self.execute(&program, &reporter);
         let reports = reporter.finish()?;
+        self.warn_of_unproved(&reports);
         stats.add_writes(&self.args.out_dir, &reports);
         self.certificate.add_writes(path, &self.args.out_dir, &reports);
         stats.outcome = match ended {
@@ -186,6 +190,18 @@ impl Session<'_> {
         let mut stderr = print::stderr();
         render_human(source, &shown, color, &mut stderr)?;
         Ok(stderr.flush()?)
+    }
+
+    /// Warns of images that would have taken more exact work than is done unasked.
+    fn warn_of_unproved(&self, reports: &[WriteReport]) {
+        for report in reports.iter().filter(|report| report.precision != self.settings.precision && !self.args.quiet) {
+            let path = disk::shown(&self.args.out_dir, &report.name);
+            print::to_stderr(&format!(
+                "warning: `{}` is made in f64: to prove its pixels takes long; --precision certified does, and \
+                 --precision f64 does not try\n",
+                path.display()
+            ));
+        }
     }
 
     /// Warns when another scene of this call writes a file that this one writes too.

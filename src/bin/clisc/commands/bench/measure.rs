@@ -50,6 +50,8 @@ impl Bench<'_> {
         let usual = Settings { size: self.size, ..Settings::default() };
         let of_modes: Vec<_> =
             modes.iter().map(|mode| Settings { precision: (*mode).into(), ..usual.clone() }).collect();
+        // What samples cost and gain is not a matter of proofs.
+        let usual = Settings { precision: plan::Precision::F64, ..usual };
         let of_samples: Vec<_> = samples.iter().map(|n| Settings { samples: *n, ..usual.clone() }).collect();
         let mut timed = self.time_all(&[of_modes.clone(), of_samples].concat())?;
         let timed_samples = timed.split_off(modes.len());

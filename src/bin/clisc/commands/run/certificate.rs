@@ -7,7 +7,7 @@ use std::path::Path;
 
 use clisc::exact::TiePlace;
 use clisc::exec::{Proof, WriteReport};
-use clisc::plan::{Part, Precision, SampleAt, Settings};
+use clisc::plan::{Part, SampleAt, Settings};
 use serde::Serialize;
 
 use crate::disk;
@@ -94,12 +94,7 @@ impl Certificate {
     /// Makes the certificate of no images yet.
     pub fn new(settings: &Settings) -> Self {
         let settings = RenderSettings {
-            precision: match settings.precision {
-                Precision::F32 => "f32",
-                Precision::F64 => "f64",
-                Precision::Certified => "certified",
-                Precision::Exact => "exact",
-            },
+            precision: settings.precision.name(),
             part: match settings.part {
                 Part::A => "a",
                 Part::B => "b",

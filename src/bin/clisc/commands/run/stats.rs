@@ -58,6 +58,8 @@ struct ImageStats {
     path: String,
     width: u32,
     height: u32,
+    /// The arithmetic that gave its pixels.
+    precision: &'static str,
     bytes: u64,
     #[serde(rename = "trace_seconds", serialize_with = "seconds")]
     trace: Duration,
@@ -128,6 +130,7 @@ impl SceneStats {
                 path: disk::shown(out_dir, &report.name).display().to_string(),
                 width: report.size.width(),
                 height: report.size.height(),
+                precision: report.precision.name(),
                 bytes: report.n_bytes,
                 trace: report.trace_time,
                 encode: report.encode_time,
