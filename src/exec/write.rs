@@ -167,7 +167,7 @@ impl Write<'_> {
             written.map_err(|error| self.write_error(error))?;
         }
         report.n_bytes = bytes.len() as u64;
-        if self.options.settings.precision.is_proved() {
+        if report.proof.is_some() {
             let mut crc32 = Crc32::default();
             crc32.update(bytes);
             report.crc32 = Some(crc32.value());
