@@ -8,7 +8,7 @@ use crate::compile;
 use crate::exec::{CancellationToken, ExecError, MemorySink, Options, execute};
 use crate::image::decode_png;
 use crate::ir::{Command, Registers, SceneView, Valid, validate};
-use crate::plan::{Part, Precision, SampleAt, Settings, Size, plan};
+use crate::plan::{ExactWork, Part, Precision, SampleAt, Settings, Size, plan};
 use crate::source::Source;
 use crate::trace::Tracer;
 
@@ -27,7 +27,7 @@ const HEIGHT: u32 = 6;
 pub fn assert_renders_soundly(bytes: &[u8]) {
     let program = sound_program(bytes);
     let size = Size::new(WIDTH, HEIGHT).expect("a size within the limits");
-    let usual = Settings { size, precision: Precision::F64, ..Settings::default() };
+    let usual = Settings { size, precision: Precision::F64, exact_work: ExactWork::Unlimited, ..Settings::default() };
     assert_certified_is_exact(&program, &usual);
     assert_cuts_agree(&program, &Settings { part: Part::A, ..usual.clone() });
     assert_cuts_agree(&program, &Settings { samples: 2, sample_at: SampleAt::Centre, max_level: 3, ..usual.clone() });
