@@ -3,8 +3,7 @@
 //! It follows the semantics formula by formula in [ball arithmetic](ball), so each comparison is either proved or open. An
 //! open one makes the pixel again with twice the bits ([`LADDER`]); what is still open at the last precision is taken for a
 //! tie, counted, listed with its place, and settled by the rule that the semantics have for equality. There is no epsilon.
-//! Before that `algebra` is asked, which proves ties and
-//! near ties that are not too deep in mirrors.
+//! Before that `algebra` is asked, which proves ties and near ties that are not too deep in mirrors.
 //!
 //! One rule is narrower than its text, because the original image of scene i6 says so in pixel (0, 180): the far rim of a
 //! cylinder that a ray touches in passing, leaving the infinite wall as it comes down to the cap, is no hit.
