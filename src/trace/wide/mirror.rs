@@ -68,17 +68,16 @@ pub(super) fn nearest_hit<L: Lanes>(
     rays: &Rays<L>,
     active: L::Mask,
 ) -> Nearest<L> {
-    let mut nearest = match &bounds.cluster {
-        None => Nearest::nothing(),
-        Some(cluster) => meet_cluster(cluster, &bounds.mirrored, spheres, rays, !cylinders.is_empty()),
-    };
-    if bounds.cluster.is_some() && cylinders.is_empty() {
-        return nearest;
-    }
+    let mut nearest = Nearest::nothing();
     let reach = Reach::new(bounds, rays);
-    if bounds.cluster.is_none() {
-        for &i in spheres {
-            meet_sphere(&mut nearest, bounds, &bounds.mirrored[i as usize], rays, &reach, active);
+    match &bounds.cluster {
+        Some(cluster) => {
+            nearest = meet_cluster(cluster, &bounds.mirrored, spheres, rays, !cylinders.is_empty());
+        }
+        None => {
+            for &i in spheres {
+                meet_sphere(&mut nearest, bounds, &bounds.mirrored[i as usize], rays, &reach, active);
+            }
         }
     }
     for &i in cylinders {

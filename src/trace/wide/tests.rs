@@ -9,6 +9,7 @@ use crate::plan::{Settings, Size, plan};
 use crate::testing::Stream;
 use crate::trace::camera::Camera;
 use crate::trace::integrator::Integrator;
+use crate::trace::kernels::{Job, Lanes, Mask};
 use crate::trace::shade::HitPoint;
 
 /// The hits of a tile's eye rays: packets with their points.
