@@ -2,7 +2,7 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use crate::math::{Ball64, DoubleDouble, Real, Sign, elementary};
+use crate::math::{Ball64, DoubleDouble, Expansion, Real, Sign, elementary};
 
 /// A bound on the relative error of one operation.
 const ROUNDOFF: f64 = DoubleDouble::ROUNDOFF;
@@ -186,12 +186,16 @@ impl Real for Ball106 {
     }
 
     fn power_of_point<const N: usize>(point: [Self; N], center: [f64; N], radius: f64) -> Self {
-        let radius = Self::exact(radius);
-        let mut power = -radius.square();
+        let mut power = -Self::exact(radius).square();
         for (coordinate, center) in point.into_iter().zip(center) {
             power = power + (coordinate - Self::exact(center)).square();
         }
-        power
+        let is_binary64 = |number: &Self| number.error == 0.0 && number.value.lo() == 0.0;
+        if power.sign() != Sign::Unknown || !point.iter().all(is_binary64) {
+            return power;
+        }
+        let exact = Expansion::power_of_point(point.map(Self::value), center, radius);
+        exact.map_or(power, |exact| exact.rounded())
     }
 
     fn floor(self) -> Option<f64> {

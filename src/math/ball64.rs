@@ -10,7 +10,7 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use crate::math::{DoubleDouble, Real, Sign};
+use crate::math::{DoubleDouble, Expansion, Real, Sign};
 
 /// Half the distance from 1 to the next number: the relative error of one rounding is at most this.
 const ROUNDOFF: f64 = f64::EPSILON / 2.0;
@@ -203,7 +203,12 @@ impl Real for Ball64 {
         }
         // Two operations a coordinate, each on numbers of at most the magnitude.
         let own = magnitude * (2 * N) as f64 * DoubleDouble::ROUNDOFF + power.lo().abs();
-        Self { value: power.hi(), error: (inherited + own) * WIDEN + UNDERFLOW }
+        let power = Self { value: power.hi(), error: (inherited + own) * WIDEN + UNDERFLOW };
+        if power.sign() != Sign::Unknown || point.iter().any(|coordinate| coordinate.error != 0.0) {
+            return power;
+        }
+        let exact = Expansion::power_of_point(point.map(|coordinate| coordinate.value), center, radius);
+        exact.map_or(power, |exact| exact.rounded())
     }
 
     #[inline]

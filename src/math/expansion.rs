@@ -7,14 +7,17 @@
 
 use std::cmp::Ordering;
 
-use crate::math::DoubleDouble;
+use crate::math::{DoubleDouble, Real};
+
+/// The least magnitude of a length whose square [`Expansion::add_square`] takes without a loss to underflow: 2⁻⁴⁰⁰.
+const MIN_LENGTH: f64 = f64::from_bits((1023 - 400) << 52);
 
 /// A number that is the exact sum of its terms.
 ///
 /// Exact as long as nothing overflows; products must not underflow, see [`Expansion::add_product`].
 #[derive(Clone, Debug, Default)]
 pub struct Expansion {
-    /// Do not overlap; magnitudes rise, zeros between them.
+    /// Do not overlap; magnitudes rise, and none is 0.
     terms: Vec<f64>,
 }
 
@@ -27,13 +30,19 @@ impl Expansion {
 
     /// Adds a number.
     pub fn add(&mut self, number: f64) {
+        if number == 0.0 {
+            return;
+        }
         let mut carried = number;
-        for term in &mut self.terms {
+        self.terms.retain_mut(|term| {
             let sum = DoubleDouble::sum(carried, *term);
             *term = sum.lo();
             carried = sum.hi();
+            *term != 0.0
+        });
+        if carried != 0.0 {
+            self.terms.push(carried);
         }
-        self.terms.push(carried);
     }
 
     /// Adds a·b, whose magnitude is 0 or at least 2⁻⁹⁰⁰.
@@ -43,12 +52,46 @@ impl Expansion {
         self.add(product.hi());
     }
 
+    /// Adds (a + b)², or takes it away for a `sign` of −1, and tells whether that is exact: whether no length is so small that
+    /// a product may underflow.
+    ///
+    /// The sum is exactly that of two numbers, and its square that of three products.
+    #[must_use]
+    pub fn add_square(&mut self, a: f64, b: f64, sign: f64) -> bool {
+        let exact = DoubleDouble::sum(a, b);
+        let is_sound = |number: f64| number == 0.0 || number.abs() >= MIN_LENGTH;
+        self.add_product(exact.hi(), sign * exact.hi());
+        if exact.lo() != 0.0 {
+            self.add_product(2.0 * exact.hi(), sign * exact.lo());
+            self.add_product(exact.lo(), sign * exact.lo());
+        }
+        is_sound(exact.hi()) && is_sound(exact.lo())
+    }
+
+    /// Returns the power of a point with regard to a circle or sphere, |p − c|² − r²: below 0 inside, 0 on it. `None` when a
+    /// length is so small that a product may underflow.
+    #[must_use]
+    pub fn power_of_point<const N: usize>(point: [f64; N], center: [f64; N], radius: f64) -> Option<Self> {
+        let mut power = Self::new();
+        let mut is_exact = power.add_square(radius, 0.0, -1.0);
+        for (coordinate, center) in point.into_iter().zip(center) {
+            is_exact &= power.add_square(coordinate, -center, 1.0);
+        }
+        is_exact.then_some(power)
+    }
+
+    /// Returns the number with a bound on what is lost to rounding; 0 is exact.
+    #[must_use]
+    pub fn rounded<R: Real>(&self) -> R {
+        // From the smallest on: the bound is some roundings of the largest term.
+        self.terms.iter().fold(R::exact(0.0), |sum, term| sum + R::exact(*term))
+    }
+
     /// Compares with 0.
     #[must_use]
     pub fn compare_zero(&self) -> Ordering {
-        // The largest term that is not 0 outweighs all smaller ones together.
-        let leading = self.terms.iter().rev().find(|term| **term != 0.0);
-        leading.map_or(Ordering::Equal, |term| term.total_cmp(&0.0))
+        // The largest term outweighs all smaller ones together.
+        self.terms.last().map_or(Ordering::Equal, |term| term.total_cmp(&0.0))
     }
 }
 
@@ -66,9 +109,27 @@ pub fn compare_sum_zero<const N: usize>(numbers: [f64; N]) -> Ordering {
     sum.compare_zero()
 }
 
+/// Returns on which side of a circle or sphere a point lies, exactly: the sign of |p − c|² − r², `Less` inside. `None` when a
+/// length is so small that this cannot be told.
+#[must_use]
+pub fn side_of<const N: usize>(point: [f64; N], center: [f64; N], radius: f64) -> Option<Ordering> {
+    let lengths = point.into_iter().zip(center).map(|(coordinate, center)| coordinate - center);
+    let distance_squared: f64 = lengths.map(|length| length * length).sum();
+    let radius_squared = radius * radius;
+    let power = distance_squared - radius_squared;
+    // A square is off by 3 roundings of itself, each of the N − 1 additions and the difference by one; mostly that decides.
+    let slack = (distance_squared + radius_squared) * ((N + 4) as f64 * f64::EPSILON) + f64::MIN_POSITIVE;
+    if power.abs() > slack {
+        return Some(power.total_cmp(&0.0));
+    }
+    Expansion::power_of_point(point, center, radius).map(|power| power.compare_zero())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::{Ball64, Ball106, Sign};
+    use crate::testing::Stream;
 
     #[test]
     fn a_sum_that_rounding_hides_has_its_sign() {
@@ -87,5 +148,43 @@ mod tests {
         assert_eq!(sum.compare_zero(), Ordering::Less, "(1 + e)(1 - e) is 1 - e²");
         sum.add_product(f64::EPSILON, f64::EPSILON);
         assert_eq!(sum.compare_zero(), Ordering::Equal);
+    }
+
+    /// A point of whole numbers and its distance from 0, whole too, by Lebesgue's identity; of `bits` + 4 bits at most.
+    fn whole_quadruple(stream: &mut Stream, bits: i32) -> ([f64; 3], f64) {
+        let [m, n, p, q] = [0; 4].map(|_| stream.below(1 << (bits / 2)) as f64);
+        let point = [m * m + n * n - p * p - q * q, 2.0 * (m * q + n * p), 2.0 * (n * q - m * p)];
+        (point, m * m + n * n + p * p + q * q)
+    }
+
+    #[test]
+    fn the_side_of_a_point_on_a_sphere_is_known_to_the_last_bit() {
+        let mut stream = Stream::new(11);
+        for _ in 0..5_000 {
+            let (offset, radius) = whole_quadruple(&mut stream, 49);
+            if radius == 0.0 {
+                continue;
+            }
+            let scale = libm::ldexp(1.0, stream.below(400) as i32 - 200);
+            // Whole numbers below 2⁵²: their sum has no more than 53 bits.
+            let center = offset.map(|_| (stream.below(1 << 51) as f64 - (1u64 << 50) as f64) * scale);
+            let point = std::array::from_fn(|axis| center[axis] + offset[axis] * scale);
+            let radius = radius * scale;
+            let radii = [radius, radius.next_down(), radius.next_up()];
+            let sides = [Ordering::Equal, Ordering::Greater, Ordering::Less];
+            let signs = [Sign::Zero, Sign::Positive, Sign::Negative];
+            for ((radius, side), sign) in radii.into_iter().zip(sides).zip(signs) {
+                assert_eq!(side_of(point, center, radius), Some(side), "{point:?} {center:?} {radius}");
+                assert_eq!(Ball64::power_of_point(point.map(Ball64::exact), center, radius).sign(), sign);
+                assert_eq!(Ball106::power_of_point(point.map(Ball106::exact), center, radius).sign(), sign);
+            }
+        }
+    }
+
+    #[test]
+    fn lengths_whose_squares_underflow_have_no_side_unless_it_is_clear() {
+        assert_eq!(side_of([3e-200, 4e-200], [0.0; 2], 5e-200), None);
+        assert_eq!(side_of([3e-200, 4e-200], [0.0; 2], 1.0), Some(Ordering::Less));
+        assert_eq!(side_of([0.0; 3], [0.0; 3], 5e-324), None);
     }
 }

@@ -18,7 +18,7 @@ pub use ball64::Ball64;
 pub use ball106::Ball106;
 pub use double_double::DoubleDouble;
 pub use elementary::tan_half_degrees;
-pub use expansion::{Expansion, compare_sum_zero};
+pub use expansion::{Expansion, compare_sum_zero, side_of};
 pub use real::{Real, Sign};
 pub use vector::Vector;
 

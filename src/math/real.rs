@@ -79,7 +79,8 @@ pub trait Real:
     /// Returns the power of a point with regard to a circle or sphere: the squared distance of `point` from `center`, less
     /// `radius` squared. Below 0 inside, above 0 outside.
     ///
-    /// The difference is taken in more precision than the type has, because it cancels near the surface of large spheres.
+    /// The difference is taken in more precision than the type has, because it cancels near the surface of large spheres. Of
+    /// a point that is known exactly the sign is known, as long as no product underflows: see [`Expansion::power_of_point`](super::Expansion::power_of_point).
     fn power_of_point<const N: usize>(point: [Self; N], center: [f64; N], radius: f64) -> Self;
 
     /// Returns ⌊x⌋ when all of the bounds agree on it.

@@ -4,11 +4,8 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use crate::math::{Ball64, DoubleDouble, Expansion, Real, Sign, Vector, compare_sum_zero};
+use crate::math::{Ball64, Expansion, Real, Sign, Vector, compare_sum_zero};
 use crate::plan::bodies::{Solid, are_apart};
-
-/// The least magnitude of a length whose square does not underflow in [`Expansion::add_product`]: 2⁻⁴⁰⁰.
-const MIN_LENGTH: f64 = f64::from_bits((1023 - 400) << 52);
 
 /// Which faces of an object are meant; a sphere has but its wall.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -165,23 +162,14 @@ fn length_between(a: DVec3, b: DVec3) -> Ball64 {
 }
 
 /// Tells whether two spheres lie outside of each other, though they may touch: |c − c'|² ≥ (r + r')², exactly.
-///
-/// Each difference and the sum of the radii is the exact sum of two numbers, and a square of such a sum that of three
-/// products.
 fn touch_from_outside(one: &Solid, other: &Solid) -> bool {
     let (Solid::Sphere { center: a, radius: r }, Solid::Sphere { center: b, radius: s }) = (*one, *other) else {
         return false;
     };
     let mut sum = Expansion::new();
-    let mut add_square = |x: f64, y: f64, sign: f64| {
-        let exact = DoubleDouble::sum(x, y);
-        let is_sound = |number: f64| number == 0.0 || number.abs() >= MIN_LENGTH;
-        sum.add_product(exact.hi(), sign * exact.hi());
-        sum.add_product(2.0 * exact.hi(), sign * exact.lo());
-        sum.add_product(exact.lo(), sign * exact.lo());
-        is_sound(exact.hi()) && is_sound(exact.lo())
-    };
-    let is_exact =
-        add_square(a.x, -b.x, 1.0) & add_square(a.y, -b.y, 1.0) & add_square(a.z, -b.z, 1.0) & add_square(r, s, -1.0);
+    let is_exact = sum.add_square(a.x, -b.x, 1.0)
+        & sum.add_square(a.y, -b.y, 1.0)
+        & sum.add_square(a.z, -b.z, 1.0)
+        & sum.add_square(r, s, -1.0);
     is_exact && sum.compare_zero() != Ordering::Less
 }
