@@ -32,6 +32,7 @@ impl<R: Real> Camera<R> {
             origin: Vector::new(zero, zero, zero),
             dir: Vector::new(along(x), along(y), R::exact(-1.0)),
             leaving: None,
+            light: None,
         }
     }
 }

@@ -119,5 +119,6 @@ fn reflect<R: Real>(ray: &Ray<R>, at: &HitPoint<'_, R>) -> Ray<R> {
         origin: at.point,
         dir: ray.dir - at.normal.scale(twice),
         leaving: Some(Leaving { equation: at.equation, inward: at.from_inside }),
+        light: None,
     }
 }

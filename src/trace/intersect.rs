@@ -6,14 +6,21 @@
 //! a small sphere far away. The power is computed in twice the precision, which it needs beside a large sphere. And of
 //! the two roots the one that would cancel is computed from the other by their product p/a.
 //!
+//! What no precision decides, because it is equal, is known where it follows from numbers of the scene:
+//! - The eye is one of them, so the sign of p is known for eye rays, also where it is 0.
+//! - So is a light, which a shadow ray meets at t = 1: see `occlude`.
+//! - Of two surfaces with the same equation a ray meets the same roots, and of two caps in one plane the same point.
+//!
 //! # Source
 //! Haines et al., "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems (2019), chapter 7. We keep the
 //! direction unnormalised and take |m × d| where they take the rejection of m from d.
 
 use std::cmp::Ordering;
 
-use crate::math::{Real, Vector};
-use crate::plan::{Candidates, Scene};
+use glam::DVec3;
+
+use crate::math::{Real, Sign, Vector, side_of};
+use crate::plan::{Candidates, Object, Scene};
 use crate::trace::integrator::Integrator;
 use crate::trace::judge::{Doubt, Judge};
 use crate::trace::ray::{Face, Hit, Leaving, Ray};
@@ -49,11 +56,17 @@ impl<R: Real> Integrator<'_, '_, R> {
     /// # Errors
     /// [`Doubt`] when it cannot be decided which that is.
     pub(super) fn intersect(&mut self, ray: &Ray<R>, among: Candidates<'_>) -> Result<Option<Hit<R>>, Doubt> {
+        let scene = &self.plan.scene;
         let mut nearest: Option<(Hit<R>, u32)> = None;
-        self.visit_hits(ray, among, |judge, hit, order| {
+        self.any_kept(ray, among, |judge, object| {
+            let Some(hit) = intersect_object(judge, scene, ray, object)? else { return Ok(false) };
+            let order = match object {
+                Object::Sphere(i) => scene.sphere_primitives[i as usize].order,
+                Object::Cylinder(i) => scene.cylinder_primitives[i as usize].order,
+            };
             let replaces = match &nearest {
                 None => true,
-                Some((best, best_order)) => match judge.compare_zero(best.t - hit.t)? {
+                Some((best, best_order)) => match compare(judge, scene, best, &hit)? {
                     Ordering::Greater => true,
                     Ordering::Equal => order < *best_order,
                     Ordering::Less => false,
@@ -67,30 +80,23 @@ impl<R: Real> Integrator<'_, '_, R> {
         Ok(nearest.map(|(hit, _)| hit))
     }
 
-    /// Tells whether one of the candidates is met with 0 < t < 1.
-    ///
-    /// # Errors
-    /// [`Doubt`] when it cannot be decided.
-    pub(super) fn occluded(&mut self, ray: &Ray<R>, among: Candidates<'_>) -> Result<bool, Doubt> {
-        self.visit_hits(ray, among, |judge, hit, _| judge.is_positive(R::exact(1.0) - hit.t))
-    }
-
     /// Tells whether one of the candidates is met at all.
     ///
     /// # Errors
     /// [`Doubt`] when it cannot be decided.
     pub(super) fn meets_anything(&mut self, ray: &Ray<R>, among: Candidates<'_>) -> Result<bool, Doubt> {
-        self.visit_hits(ray, among, |_, _, _| Ok(true))
+        let scene = &self.plan.scene;
+        self.any_kept(ray, among, |judge, object| Ok(intersect_object(judge, scene, ray, object)?.is_some()))
     }
 
-    /// Calls `visit` with the nearest hit on each candidate until it answers `true`, and tells whether it did.
+    /// Tells whether `test` answers `true` for one of the candidates that are not rejected, and asks no further then.
     ///
-    /// A doubt is put off: it is returned only if no other primitive makes `visit` answer `true`.
-    fn visit_hits(
+    /// A doubt is put off: it is returned only if there is none.
+    pub(super) fn any_kept(
         &mut self,
         ray: &Ray<R>,
         among: Candidates<'_>,
-        mut visit: impl FnMut(&mut Judge, Hit<R>, u32) -> Result<bool, Doubt>,
+        mut test: impl FnMut(&mut Judge, Object) -> Result<bool, Doubt>,
     ) -> Result<bool, Doubt> {
         let scene = &self.plan.scene;
         let plain_ray = ray.plain();
@@ -103,17 +109,8 @@ impl<R: Real> Integrator<'_, '_, R> {
         reject::keep_cylinders(&plain_ray, &scene.cylinders, among.cylinders, &mut self.kept);
 
         for (k, &i) in self.kept.iter().enumerate() {
-            let (hit, primitive) = if k < n_spheres {
-                (intersect_sphere(&mut self.judge, scene, ray, i), scene.sphere_primitives[i as usize])
-            } else {
-                (intersect_cylinder(&mut self.judge, scene, ray, i), scene.cylinder_primitives[i as usize])
-            };
-            let answer = match hit {
-                Ok(None) => Ok(false),
-                Ok(Some(hit)) => visit(&mut self.judge, hit, primitive.order),
-                Err(doubt) => Err(doubt),
-            };
-            match answer {
+            let object = if k < n_spheres { Object::Sphere(i) } else { Object::Cylinder(i) };
+            match test(&mut self.judge, object) {
                 Ok(true) => return Ok(true),
                 Ok(false) => {}
                 Err(found) => doubt = Some(found),
@@ -121,6 +118,34 @@ impl<R: Real> Integrator<'_, '_, R> {
         }
         doubt.map_or(Ok(false), Err)
     }
+}
+
+/// Returns the nearest hit on an object.
+fn intersect_object<R: Real>(
+    judge: &mut Judge,
+    scene: &Scene<'_>,
+    ray: &Ray<R>,
+    object: Object,
+) -> Result<Option<Hit<R>>, Doubt> {
+    match object {
+        Object::Sphere(i) => intersect_sphere(judge, scene, ray, i),
+        Object::Cylinder(i) => intersect_cylinder(judge, scene, ray, i),
+    }
+}
+
+/// Compares two hits of one ray by t.
+///
+/// Those of one equation are hits of the same one or two points. In a plane there is one. Of a sphere or wall the near one is
+/// met from outside and the far one from inside, or from within the far one alone; if they coincide, as the ray touches,
+/// only the near one is met.
+fn compare<R: Real>(judge: &mut Judge, scene: &Scene<'_>, one: &Hit<R>, other: &Hit<R>) -> Result<Ordering, Doubt> {
+    if one.face.equation(scene) != other.face.equation(scene) {
+        return judge.compare_zero(one.t - other.t);
+    }
+    Ok(match one.face {
+        Face::Sphere(_) | Face::Wall(_) => one.from_inside.cmp(&other.from_inside),
+        Face::LowerCap(_) | Face::UpperCap(_) => Ordering::Equal,
+    })
 }
 
 fn intersect_sphere<R: Real>(
@@ -143,11 +168,11 @@ fn intersect_sphere<R: Real>(
             radius: R::exact(spheres.radius[i]),
         }
     };
-    let [nearest, _] = roots(judge, leaving, quadric)?;
+    let [nearest, _] = roots(judge, leaving, false, quadric)?;
     Ok(nearest.map(|root| Hit { t: root.t, face: Face::Sphere(sphere_idx), from_inside: root.from_inside }))
 }
 
-fn intersect_cylinder<R: Real>(
+pub(super) fn intersect_cylinder<R: Real>(
     judge: &mut Judge,
     scene: &Scene<'_>,
     ray: &Ray<R>,
@@ -186,10 +211,10 @@ fn intersect_wall<R: Real>(
     if judge.compare_zero(dir_squared)?.is_eq() {
         return Ok(None);
     }
+    let center = [cylinders.x[i], cylinders.z[i]];
     let quadric = || {
-        let x = R::exact(cylinders.x[i]) - ray.origin.x;
-        let z = R::exact(cylinders.z[i]) - ray.origin.z;
-        let center = [cylinders.x[i], cylinders.z[i]];
+        let x = R::exact(center[0]) - ray.origin.x;
+        let z = R::exact(center[1]) - ray.origin.z;
         Quadric {
             dir_squared,
             along: x * ray.dir.x + z * ray.dir.z,
@@ -198,7 +223,9 @@ fn intersect_wall<R: Real>(
             radius: R::exact(cylinders.radius[i]),
         }
     };
-    for root in roots(judge, leaving, quadric)?.into_iter().flatten() {
+    let is_on = |light: DVec3| side_of([light.x, light.z], center, cylinders.radius[i]) == Some(Ordering::Equal);
+    let ends_on = ray.light.is_some_and(is_on);
+    for root in roots(judge, leaving, ends_on, quadric)?.into_iter().flatten() {
         let y = ray.origin.y + ray.dir.y * root.t;
         let from_bottom = y - R::exact(cylinders.y_min[i]);
         let to_top = R::exact(cylinders.y_max[i]) - y;
@@ -239,6 +266,10 @@ fn intersect_cap<R: Real>(
     if ray.leaving.is_some_and(|leaving| leaving.equation == scene.cap_equations[i][usize::from(is_upper)]) {
         return Ok(None);
     }
+    if ray.light.is_some_and(|light| light.y == height) {
+        // The plane is met where the light is, and casts no shadow there.
+        return Ok(None);
+    }
     let rise = R::exact(height) - ray.origin.y;
     let vertical = judge.compare_zero(ray.dir.y)?;
     if vertical.is_eq() || judge.compare_zero(rise)? != vertical {
@@ -257,13 +288,17 @@ fn intersect_cap<R: Real>(
     Ok(is_met.then_some(Hit { t, face, from_inside }))
 }
 
-/// Finds the meetings with a sphere or an infinite wall.
+/// Finds the meetings with a sphere or an infinite wall, but for one at t = 1 if the ray ends on it.
 ///
 /// For the surface that the ray leaves, 0 is a root and no meeting; the other is 2b/a. It lies ahead exactly when the ray
-/// leads inward. The same holds, by the sign of b, if the origin is found to lie on the surface by a tie.
+/// leads inward. The same holds, by the sign of b, if the origin lies on the surface all the same.
+///
+/// For the surface that holds the light at the end of the ray, 1 is a root, and the other is p/a. From outside that is ahead;
+/// it is the near one if it is before the light, and else of no matter.
 fn roots<R: Real>(
     judge: &mut Judge,
     leaving: Option<Leaving>,
+    ends_on: bool,
     quadric: impl FnOnce() -> Quadric<R>,
 ) -> Result<Roots<R>, Doubt> {
     if leaving.is_some_and(|leaving| !leaving.inward) {
@@ -272,9 +307,14 @@ fn roots<R: Real>(
     let Quadric { dir_squared, along, cross_squared, power, radius } = quadric();
     let opposite = || Root { t: along * R::exact(2.0) / dir_squared, from_inside: true };
     if leaving.is_some() {
-        return Ok([Some(opposite()), None]);
+        return Ok([(!ends_on).then(opposite), None]);
     }
-    match judge.compare_zero(power)? {
+    let side = judge.compare_zero(power)?;
+    if ends_on {
+        let other = Root { t: power / dir_squared, from_inside: false };
+        return Ok([side.is_gt().then_some(other), None]);
+    }
+    match side {
         Ordering::Equal => Ok([judge.is_positive(along)?.then(opposite), None]),
         Ordering::Less => {
             let spread = (along.square() - dir_squared * power).sqrt();
@@ -282,18 +322,23 @@ fn roots<R: Real>(
             Ok([Some(Root { t, from_inside: true }), None])
         }
         Ordering::Greater => {
+            // Where one of the two answers that there is no meeting, a doubt about the other is of no matter.
+            if matches!(along.sign(), Sign::Negative | Sign::Zero) {
+                return Ok([None, None]);
+            }
             let discriminant = dir_squared * radius.square() - cross_squared;
-            let spread = match judge.compare_zero(discriminant)? {
+            let touches = match judge.compare_zero(discriminant)? {
                 Ordering::Less => return Ok([None, None]),
-                Ordering::Equal => R::exact(0.0),
-                Ordering::Greater => discriminant.sqrt(),
+                Ordering::Equal => true,
+                Ordering::Greater => false,
             };
             if !judge.is_positive(along)? {
                 return Ok([None, None]);
             }
-            let near = Root { t: power / (along + spread), from_inside: false };
-            let far = Root { t: (along + spread) / dir_squared, from_inside: true };
-            Ok([Some(near), Some(far)])
+            let sum = if touches { along } else { along + discriminant.sqrt() };
+            let near = Root { t: power / sum, from_inside: false };
+            let far = Root { t: sum / dir_squared, from_inside: true };
+            Ok([Some(near), (!touches).then_some(far)])
         }
     }
 }

@@ -6,7 +6,7 @@
 //! again in double-double ([`Ball106`]); what that cannot decide either is a tie, counted and drawn as equality asks. The
 //! code is the same for both, generic over [`Real`].
 //!
-//! Reading order: [`Tracer::render_rows`], `pixel`, `integrator`, `intersect`, `shade`. `reject` keeps most
+//! Reading order: [`Tracer::render_rows`], `pixel`, `integrator`, `intersect`, `shade`, `occlude`. `reject` keeps most
 //! primitives away from them.
 //!
 //! Never here: files, encoding, progress (see `exec`); an epsilon.
@@ -20,6 +20,7 @@ mod intersect;
 mod judge;
 pub mod kernels;
 mod look_up;
+mod occlude;
 mod pixel;
 mod ray;
 mod referee;

@@ -1,8 +1,10 @@
 //! Rays and what they meet.
 
+use glam::DVec3;
+
 use crate::ir::EquationId;
 use crate::math::{Real, Vector};
-use crate::plan::Object;
+use crate::plan::{Object, Scene};
 use crate::trace::reject::PlainRay;
 
 /// A half-line: the points origin + t·dir with t > 0.
@@ -14,6 +16,8 @@ pub struct Ray<R> {
     pub dir: Vector<R>,
     /// The surface on which a secondary ray starts.
     pub leaving: Option<Leaving>,
+    /// Where the light is to which a shadow ray leads, at t = 1: exactly.
+    pub light: Option<DVec3>,
 }
 
 /// The surface that a ray leaves, and to which side.
@@ -60,6 +64,16 @@ pub enum Face {
 }
 
 impl Face {
+    /// Returns the equation of its surface.
+    pub fn equation(self, scene: &Scene<'_>) -> EquationId {
+        match self {
+            Self::Sphere(i) => scene.sphere_equations[i as usize],
+            Self::Wall(i) => scene.wall_equations[i as usize],
+            Self::LowerCap(i) => scene.cap_equations[i as usize][0],
+            Self::UpperCap(i) => scene.cap_equations[i as usize][1],
+        }
+    }
+
     /// Returns the object that the face belongs to.
     pub fn object(self) -> Object {
         match self {

@@ -36,30 +36,30 @@ impl<'p, R: Real> HitPoint<'p, R> {
     pub fn new(scene: &Scene<'p>, ray: &Ray<R>, hit: &Hit<R>) -> Self {
         let mut point = ray.origin + ray.dir.scale(hit.t);
         let zero = R::exact(0.0);
-        let (outward, primitive, equation) = match hit.face {
+        let (outward, primitive) = match hit.face {
             Face::Sphere(i) => {
                 let (i, spheres) = (i as usize, &scene.spheres);
                 let center = Vector::exact(DVec3::new(spheres.x[i], spheres.y[i], spheres.z[i]));
                 let radius = R::exact(spheres.radius[i]);
                 let normal = (point - center).map(|coordinate| coordinate / radius);
-                (normal, scene.sphere_primitives[i], scene.sphere_equations[i])
+                (normal, scene.sphere_primitives[i])
             }
             Face::Wall(i) => {
                 let (i, cylinders) = (i as usize, &scene.cylinders);
                 let radius = R::exact(cylinders.radius[i]);
                 let x = (point.x - R::exact(cylinders.x[i])) / radius;
                 let z = (point.z - R::exact(cylinders.z[i])) / radius;
-                (Vector::new(x, zero, z), scene.cylinder_primitives[i], scene.wall_equations[i])
+                (Vector::new(x, zero, z), scene.cylinder_primitives[i])
             }
             Face::LowerCap(i) => {
                 let i = i as usize;
                 point.y = R::exact(scene.cylinders.y_min[i]);
-                (Vector::exact(DVec3::NEG_Y), scene.cylinder_primitives[i], scene.cap_equations[i][0])
+                (Vector::exact(DVec3::NEG_Y), scene.cylinder_primitives[i])
             }
             Face::UpperCap(i) => {
                 let i = i as usize;
                 point.y = R::exact(scene.cylinders.y_max[i]);
-                (Vector::exact(DVec3::Y), scene.cylinder_primitives[i], scene.cap_equations[i][1])
+                (Vector::exact(DVec3::Y), scene.cylinder_primitives[i])
             }
         };
         let normal = if hit.from_inside { outward.map(|coordinate| -coordinate) } else { outward };
@@ -70,7 +70,7 @@ impl<'p, R: Real> HitPoint<'p, R> {
             incoming: ray.dir,
             from_inside: hit.from_inside,
             object: hit.face.object(),
-            equation,
+            equation: hit.face.equation(scene),
             surface,
         }
     }
@@ -108,11 +108,12 @@ impl<R: Real> Integrator<'_, '_, R> {
         }
         self.judge.counts.shadow_rays += 1;
         let leaving = Leaving { equation: at.equation, inward: at.from_inside };
-        let ray = Ray { origin: at.point, dir: to_light, leaving: Some(leaving) };
+        let light = self.plan.scene.lights[light_idx].position;
+        let ray = Ray { origin: at.point, dir: to_light, leaving: Some(leaving), light: Some(light) };
         let mut found = mem::take(&mut self.found);
         let listed = self.plan.occluders(at.object, light_idx);
         let among = look_up::before_light(self.plan, light_idx, &ray, &mut found, listed);
-        let answer = among.and_then(|among| self.occluded(&ray, among));
+        let answer = among.and_then(|among| self.occluded(&ray, light, among));
         self.found = found;
         answer
     }
