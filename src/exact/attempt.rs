@@ -6,7 +6,7 @@ use std::cmp::Ordering;
 use crate::exact::algebra::Algebra;
 use crate::exact::intersect::Ray;
 use crate::exact::real::Real;
-use crate::exact::scene::{Body, Scene};
+use crate::exact::scene::{Body, Equation, Scene};
 use crate::exact::tie::{Tie, Ties};
 use crate::exact::vec3::{Vec3, add, divide};
 use crate::exact::{LADDER, Pixel, Renderer, SampleAt, Settings};
@@ -32,6 +32,8 @@ pub type Decided<T> = Result<T, Undecided>;
 pub struct Attempt<'a> {
     pub scene: &'a Scene,
     pub bodies: &'a [Body<'a>],
+    /// The surfaces that the eye lies on: eye rays leave them.
+    pub eye_on: &'a [Equation],
     pub surfaces: &'a [ir::Surface],
     pub settings: &'a Settings,
     /// What cannot be decided at the last precision is a tie.
@@ -58,6 +60,7 @@ impl<'a> Attempt<'a> {
         Self {
             scene,
             bodies: renderer.bodies(),
+            eye_on: renderer.eye_on(),
             surfaces: renderer.view.surfaces(),
             settings: &renderer.settings,
             is_last,
@@ -178,6 +181,6 @@ impl<'a> Attempt<'a> {
         let x = n * (2.0 * f64::from(column) - width) + offset(sample_column);
         let y = n * (height - 2.0 * f64::from(row)) - offset(sample_row);
         let dir = [&self.number(x) * &self.scene.step, &self.number(y) * &self.scene.step, self.number(-1.0)];
-        Ray::new(self.vec3([0.0; 3]), dir, Vec::new())
+        Ray::new(self.vec3([0.0; 3]), dir, self.eye_on.to_vec())
     }
 }

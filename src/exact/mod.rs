@@ -38,7 +38,7 @@ use rayon::prelude::*;
 
 use crate::exact::attempt::Attempt;
 use crate::exact::real::Arithmetic;
-use crate::exact::scene::{Body, Scene};
+use crate::exact::scene::{Body, Equation, Scene};
 use crate::image::RgbImage;
 use crate::ir::SceneView;
 
@@ -79,6 +79,8 @@ pub struct Renderer<'p> {
     settings: Settings,
     ladder: Vec<usize>,
     bodies: OnceLock<Vec<Body<'p>>>,
+    /// The surfaces that the eye lies on.
+    eye_on: OnceLock<Vec<Equation>>,
     /// The scene at each precision of the ladder, once it was asked for.
     scenes: Vec<OnceLock<Scene>>,
     tests_all: bool,
@@ -106,7 +108,16 @@ impl<'p> Renderer<'p> {
         assert!(!ladder.is_empty(), "no precision");
         let scenes = ladder.iter().map(|_| OnceLock::new()).collect();
         let (settings, ladder) = (settings.clone(), ladder.to_vec());
-        Self { view, settings, ladder, bodies: OnceLock::new(), scenes, tests_all: false, algebra_from: 1 }
+        Self {
+            view,
+            settings,
+            ladder,
+            bodies: OnceLock::new(),
+            eye_on: OnceLock::new(),
+            scenes,
+            tests_all: false,
+            algebra_from: 1,
+        }
     }
 
     /// Tests every ray against every body, without the filter in binary64.
@@ -154,6 +165,10 @@ impl<'p> Renderer<'p> {
 
     fn bodies(&self) -> &[Body<'p>] {
         self.bodies.get_or_init(|| scene::bodies(&self.view, self.settings.part))
+    }
+
+    fn eye_on(&self) -> &[Equation] {
+        self.eye_on.get_or_init(|| scene::holding(self.bodies(), [0.0; 3]))
     }
 
     /// Renders `rows` into `rgb`, 3 bytes a pixel, row by row from the top, on all threads of the current rayon pool, until

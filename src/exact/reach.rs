@@ -60,6 +60,18 @@ impl Reach {
         let is_beyond = far.is_normal() && -b - radius * a.sqrt() - Self::MARGIN > a * (far / length_unit);
         is_beside || is_before && (b > Self::MARGIN || is_beyond)
     }
+
+    /// Tells whether a point lies off the surface by a wide margin: the c of the proof above is far from 0.
+    pub fn is_surely_off(&self, point: [f64; 3]) -> bool {
+        let length_unit = largest(point).max(largest(self.center)).max(self.radius);
+        if !is_unit(length_unit) {
+            return false;
+        }
+        let radius = self.radius / length_unit;
+        let offsets = self.axes.iter().map(|&axis| point[axis] / length_unit - self.center[axis] / length_unit);
+        let c = offsets.map(|offset| offset * offset).sum::<f64>() - radius * radius;
+        c.abs() > Self::MARGIN
+    }
 }
 
 fn largest(v: [f64; 3]) -> f64 {

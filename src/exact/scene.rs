@@ -44,6 +44,15 @@ impl Body<'_> {
         }
     }
 
+    /// Returns the equation of the sphere or the infinite wall.
+    fn equation(self) -> Equation {
+        let Reach { center: [x, y, z], radius, .. } = self.reach();
+        match self {
+            Self::Sphere(_) => Equation::Sphere([x, y, z, radius]),
+            Self::Cylinder(_) => Equation::Wall([x, z, radius]),
+        }
+    }
+
     /// Returns what it is to the filter in binary64.
     pub fn reach(self) -> Reach {
         match self {
@@ -55,11 +64,7 @@ impl Body<'_> {
     /// Returns the sphere or the infinite wall.
     pub fn quadric(self, arithmetic: Arithmetic) -> Quadric {
         let Reach { center, radius, axes } = self.reach();
-        let equation = match self {
-            Self::Sphere(_) => Equation::Sphere([center[0], center[1], center[2], radius]),
-            Self::Cylinder(_) => Equation::Wall([center[0], center[2], radius]),
-        };
-        Quadric { equation, center: arithmetic.vec3(center), radius: arithmetic.number(radius), axes }
+        Quadric { equation: self.equation(), center: arithmetic.vec3(center), radius: arithmetic.number(radius), axes }
     }
 
     /// Returns the caps: of a cylinder the lower and the upper.
@@ -134,6 +139,29 @@ pub fn bodies<'p>(view: &SceneView<'p>, part: Part) -> Vec<Body<'p>> {
     bodies.extend(cylinders.iter().map(Body::Cylinder));
     bodies.sort_unstable_by_key(|body| body.order());
     bodies
+}
+
+/// Returns the equations of the surfaces, endless walls and planes of caps that hold a point, exactly.
+pub fn holding(bodies: &[Body<'_>], point: [f64; 3]) -> Vec<Equation> {
+    let mut equations: Vec<Equation> = Vec::new();
+    let mut add = |equation: Equation| {
+        if !equations.contains(&equation) {
+            equations.push(equation);
+        }
+    };
+    for body in bodies {
+        if !body.reach().is_surely_off(point) && body.side_of(point) == Ordering::Equal {
+            add(body.equation());
+        }
+        if let Body::Cylinder(cylinder) = body {
+            [cylinder.y_min, cylinder.y_max]
+                .into_iter()
+                .filter(|&y| y == point[1])
+                .map(Equation::Cap)
+                .for_each(&mut add);
+        }
+    }
+    equations
 }
 
 /// What of a scene is the same for all pixels, in one arithmetic.
