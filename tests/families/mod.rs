@@ -62,6 +62,7 @@ pub const FAMILIES: &[Family] = &[
     Family { name: "mirror images", sketch: symmetric },
     Family { name: "extreme surfaces", sketch: extreme_surfaces },
     Family { name: "eye on a surface", sketch: eye_on_surface },
+    Family { name: "eye and lights on surfaces of long numbers", sketch: on_long_surfaces },
     Family { name: "specks", sketch: |random| specks(random, &[1e-28, 1e-20, 1e-12, 1e-5]) },
     Family { name: "giants", sketch: giants },
     Family { name: "scene in a scene", sketch: |random| scene_in_scene(random, &[-3, -6, -9]) },
@@ -155,6 +156,21 @@ impl Random {
         } else {
             sketch.cylinder(size, [x, z], [y, y + self.decimal(0.1, 2.0)]);
         }
+    }
+
+    /// Returns an offset and its length, about 1, exactly: fifty bits each, by Lebesgue's identity.
+    fn long_offset(&mut self) -> ([f64; 3], f64) {
+        let [m, n, p, q] = [0; 4].map(|_| (self.unit() * f64::from(1 << 23)).round());
+        let scaled = |whole: f64| whole / (1u64 << 47) as f64;
+        let offset = [2.0 * (m * q + n * p), 2.0 * (n * q - m * p), -(m * m + n * n - p * p - q * q).abs()];
+        (offset.map(scaled), scaled(m * m + n * n + p * p + q * q))
+    }
+
+    /// Returns an offset along x and z and its length, about 1, exactly.
+    fn long_offset_across(&mut self) -> ([f64; 2], f64) {
+        let [m, n] = [0; 2].map(|_| (self.unit() * f64::from(1 << 24)).round());
+        let scaled = |whole: f64| whole / (1u64 << 48) as f64;
+        ([m * m - n * n, -2.0 * m * n].map(scaled), scaled(m * m + n * n))
     }
 
     fn sketch(&mut self, fov_deg: f64) -> Sketch {
@@ -613,6 +629,45 @@ fn eye_on_surface(random: &mut Random) -> Sketch {
     }
     // Behind the eye, seen in mirrors only.
     sketch.surface(random.finish()).sphere([0.0, 0.0, random.decimal(4.0, 9.0)], random.decimal(0.5, 2.0));
+    sketch
+}
+
+/// Surfaces through the eye and through lights, to the last of fifty bits or but for it: squares of such lengths are longer
+/// than double-double.
+fn on_long_surfaces(random: &mut Random) -> Sketch {
+    let fov_deg = random.pick(&[60.0, 90.0, 110.0]);
+    let mut sketch = random.sketch(fov_deg);
+    random.lights(&mut sketch, 1);
+    for _ in 0..1 + random.below(2) {
+        let ([x, y, z], radius) = random.long_offset();
+        sketch.surface(random.finish());
+        let radius = random.pick(&[radius, radius, radius.next_down(), radius.next_up()]);
+        if random.chance(0.6) {
+            sketch.sphere([x, y, z], radius);
+        } else {
+            let ([x, z], radius) = random.long_offset_across();
+            let ends = random.pick(&[[-1.0, 1.0], [0.0, 1.0], [-1.0, 0.0]]);
+            sketch.cylinder(radius, [x, z], ends);
+        }
+    }
+    for _ in 0..2 {
+        // A coarse place, so that its sums with long offsets are exact.
+        let place = random.place().map(|coordinate| (coordinate * 8.0).round() / 8.0);
+        let color = random.color(0.1, 0.7);
+        sketch.surface(random.finish());
+        if random.chance(0.6) {
+            let (offset, radius) = random.long_offset();
+            sketch.light(color, std::array::from_fn(|axis| place[axis] + offset[axis]));
+            sketch.sphere(place, radius);
+        } else {
+            let ([x, z], radius) = random.long_offset_across();
+            let height = random.pick(&[0.0, 0.5, 1.0]);
+            sketch.light(color, [place[0] + x, place[1] + height, place[2] + z]);
+            sketch.cylinder(radius, [place[0], place[2]], [place[1], place[1] + 1.0]);
+        }
+    }
+    sketch.surface(random.finish()).cylinder(9.0, [0.0, -5.0], [-4.0, -3.0]);
+    random.object(&mut sketch);
     sketch
 }
 
