@@ -9,9 +9,11 @@ mod support;
 
 use std::fs;
 use std::path::Path;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
 
 use clisc::exact::{Pixel, Record, Renderer};
-use clisc::exec::{CancellationToken, MemorySink, Options, WriteReport, exact_settings, execute};
+use clisc::exec::{CancellationToken, Event, MemorySink, Observer, Options, WriteReport, exact_settings, execute};
 use clisc::image::{RgbImage, decode_png};
 use clisc::ir::{SceneView, Valid};
 use clisc::plan::{ExactWork, Pass, Passes, Precision, Settings, Size, plan};
@@ -184,6 +186,32 @@ fn an_image_that_takes_too_much_exact_work_is_made_in_binary64_altogether() {
     // So little that nothing happens.
     let (report, _) = run(&compile(&format!("{SPECK}write a.png\n")), &limited(16, 12)).pop().expect("an image");
     assert!(report.precision == Precision::Certified && report.proof.is_some_and(|proof| proof.is_complete()));
+}
+
+/// Its clock tells how often an image was started, in seconds.
+#[derive(Default)]
+struct Starts(AtomicU64);
+
+impl Observer for Starts {
+    fn now(&self) -> Duration {
+        Duration::from_secs(self.0.load(Ordering::Relaxed))
+    }
+
+    fn event(&self, event: &Event<'_>) {
+        if let Event::Started { .. } = event {
+            self.0.fetch_add(1, Ordering::Relaxed);
+        }
+    }
+}
+
+#[test]
+fn an_attempt_that_takes_too_much_exact_work_is_part_of_the_time() {
+    let settings = Settings { exact_work: ExactWork::Limited, ..sized(540, 540) };
+    let (observer, cancellation) = (Starts::default(), CancellationToken::new());
+    let options = Options { settings: &settings, observer: &observer, cancellation: &cancellation };
+    let program = compile(&format!("{SPECK}write a.png\n"));
+    let report = execute(&program, options, &mut MemorySink::default()).expect("memory takes every image").remove(0);
+    assert_eq!((report.precision, report.total_time), (Precision::F64, Duration::from_secs(2)));
 }
 
 #[test]

@@ -44,7 +44,7 @@ pub fn render_whole(
     let limit = Limit::none();
     let exactly = Exactly::new(view, settings, &limit);
     let rows = 0..settings.size.height();
-    if exactly.makes_all(view, settings) {
+    if exactly.makes_all() {
         return exactly.render_rows(rows, rgb, is_cancelled);
     }
     let tracer = Tracer::new(plan(view, settings));
@@ -55,10 +55,9 @@ pub fn render_whole(
 /// The exact renderer of one image, and what it has found.
 #[derive(Debug)]
 pub(super) struct Exactly<'p> {
-    /// Makes all pixels.
+    /// Makes all pixels, or those that double-double leaves open.
     renderer: Renderer<'p>,
-    /// Makes those that double-double leaves open.
-    referee: Renderer<'p>,
+    makes_all: bool,
     record: Mutex<Record>,
     limit: &'p Limit,
 }
@@ -66,19 +65,14 @@ pub(super) struct Exactly<'p> {
 impl<'p> Exactly<'p> {
     /// Prepares an image; costs nothing until a pixel is asked for. What it takes is spent of `limit`.
     pub fn new(view: SceneView<'p>, settings: &Settings, limit: &'p Limit) -> Self {
-        let settings = exact_settings(settings);
-        let (renderer, referee) = (Renderer::new(view, &settings), Renderer::for_open_pixels(view, &settings));
-        Self { renderer, referee, record: Mutex::default(), limit }
+        let makes_all = makes_all(&view, settings);
+        let new = if makes_all { Renderer::new } else { Renderer::for_open_pixels };
+        Self { renderer: new(view, &exact_settings(settings)), makes_all, record: Mutex::default(), limit }
     }
 
-    /// Tells whether it is to make every pixel: when asked to, or where lengths differ too much for the tracer's numbers, so
-    /// that nothing it says is proved.
-    pub fn makes_all(&self, view: SceneView<'_>, settings: &Settings) -> bool {
-        match settings.precision {
-            Precision::F32 | Precision::F64 => false,
-            Precision::Certified => !is_within_range(&view, settings.part),
-            Precision::Exact => true,
-        }
+    /// Tells whether it is to make every pixel.
+    pub fn makes_all(&self) -> bool {
+        self.makes_all
     }
 
     /// Renders rows as [`Renderer::render_rows`] does.
@@ -105,9 +99,19 @@ impl<'p> Exactly<'p> {
     }
 }
 
+/// Tells whether `exact` is to make every pixel: when asked to, or where lengths differ too much for the tracer's numbers, so
+/// that nothing it says is proved.
+fn makes_all(view: &SceneView<'_>, settings: &Settings) -> bool {
+    match settings.precision {
+        Precision::F32 | Precision::F64 => false,
+        Precision::Certified => !is_within_range(view, settings.part),
+        Precision::Exact => true,
+    }
+}
+
 impl Referee for Exactly<'_> {
     fn settle(&self, column: u32, row: u32) -> ([u8; 3], u32) {
-        let pixel = self.referee.pixel(column, row);
+        let pixel = self.renderer.pixel(column, row);
         self.limit.spend(pixel.work);
         self.note(|record| record.add(column, row, &pixel));
         (pixel.rgb, TiePlace::of(column, row, &pixel).map_or(0, |place| place.n_ties()))

@@ -9,6 +9,10 @@ use crate::plan::{ExactWork, Precision, Settings};
 /// Each pixel takes what it takes ([`Pixel::work`](crate::exact::Pixel::work)), and the sum over an image does not depend on the
 /// order in which they are made, nor on threads, machine or time. So whether it passes the limit is a matter of the scene and
 /// of what is asked for. Nothing is decided by the clock.
+///
+/// What is asked for includes the passes of the plan: without one a ray is tested against more objects, and where it nearly
+/// meets one that the plan leaves out, a pixel may be left open that is not with it. So an image near the limit may be within
+/// it with a pass and beyond it without. Each of its pixels is right either way, as far as the arithmetic that is named says.
 #[derive(Debug)]
 pub(super) struct Limit {
     max: u64,

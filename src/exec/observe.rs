@@ -102,6 +102,6 @@ pub struct WriteReport {
     pub encode_time: Duration,
     /// Time spent giving the file its name.
     pub save_time: Duration,
-    /// Time from beginning to end.
+    /// Time from beginning to end, a first attempt that took too much exact work included.
     pub total_time: Duration,
 }

@@ -37,7 +37,8 @@ impl Write<'_> {
         earlier: &mut Earlier,
         sink: &mut S,
     ) -> Result<WriteReport, ExecError> {
-        let saved = self.run_within_limit(view, earlier, sink);
+        let start = self.options.observer.now();
+        let saved = self.run_within_limit(view, earlier, sink, start);
         let is_passed = matches!(saved, Err(ExecError::Cancelled)) && self.limit.is_passed();
         if !is_passed || self.options.cancellation.is_cancelled() {
             return saved;
@@ -45,19 +46,21 @@ impl Write<'_> {
         earlier.forget_pixels();
         let settings = Settings { precision: Precision::F64, ..self.options.settings.clone() };
         let (options, limit) = (Options { settings: &settings, ..self.options }, Limit::none());
-        Write { options, limit: &limit, ..*self }.run_within_limit(view, earlier, sink)
+        Write { options, limit: &limit, ..*self }.run_within_limit(view, earlier, sink, start)
     }
 
     /// Does the work of [`Write::run`] within the limit; passing it is being cancelled.
+    ///
+    /// `start`: when the first attempt began, for the report.
     fn run_within_limit<S: Sink>(
         &self,
         view: SceneView<'_>,
         earlier: &mut Earlier,
         sink: &mut S,
+        start: Duration,
     ) -> Result<WriteReport, ExecError> {
         let Options { settings, observer, .. } = self.options;
         let size = settings.size;
-        let start = observer.now();
         observer.event(&Event::Started { write_idx: self.write_idx, name: self.name, size });
         self.check_cancelled()?;
         let file = sink.create(&ImageRequest { name: self.name, size }).map_err(|error| self.sink_error(error))?;
@@ -88,7 +91,7 @@ impl Write<'_> {
         let settings = self.options.settings;
         let exactly = Exactly::new(view, settings, self.limit);
         let referee = settings.precision.is_proved().then_some(&exactly);
-        let file = if exactly.makes_all(view, settings) {
+        let file = if exactly.makes_all() {
             self.limit.expect_all(settings);
             self.check_cancelled()?;
             let file = Kept::new(file, earlier.n_bytes_to_keep(self.write_idx));
