@@ -100,11 +100,13 @@ pub struct Slopes<T> {
 impl<T: Copy + Add<Output = T> + Sub<Output = T> + Mul<Output = T> + Div<Output = T>> Slopes<T> {
     /// Looks along a segment of which the coordinate ahead is the largest, at least [`Look::SHORTEST`] and [`Look::MIN_PRECISION`] times
     /// as large as the error of each.
+    ///
+    /// `roundoff`: what one rounding changes is at most this share of the result.
     #[inline(always)]
-    pub fn new([u, v, ahead]: [T; 3], error: T, number: impl Fn(f64) -> T) -> Self {
+    pub fn new([u, v, ahead]: [T; 3], error: T, roundoff: f64, number: impl Fn(f64) -> T) -> Self {
         let inverse = number(1.0) / ahead;
         let slopes = [u * inverse, v * inverse];
-        let slack = number(4.0) * error * inverse + number(8.0 * ROUNDOFF);
+        let slack = number(4.0) * error * inverse + number(8.0 * roundoff);
         Self {
             low: [slopes[0] - slack, slopes[1] - slack],
             high: [slopes[0] + slack, slopes[1] + slack],
@@ -239,7 +241,7 @@ fn query(to_point: [f64; 3], error: f64) -> Option<(usize, Query)> {
     if !(ahead >= Look::MIN_PRECISION * error && ahead >= Look::SHORTEST && ahead.is_finite()) {
         return None;
     }
-    Some((face.0, Slopes::new(way, error, |number| number).query()))
+    Some((face.0, Slopes::new(way, error, ROUNDOFF, |number| number).query()))
 }
 
 /// Appends a sphere to the faces that see it.

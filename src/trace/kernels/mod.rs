@@ -10,6 +10,8 @@
 //! The only `unsafe` of the library is in here: calls of instructions, and of the functions that contain them.
 #![allow(unsafe_code, reason = "instructions that not every machine has")]
 
+#[cfg(test)]
+pub(in crate::trace) mod coarse;
 mod pair;
 mod scalar;
 
@@ -122,17 +124,43 @@ pub trait Numbers:
     }
 }
 
+/// How precise lanes are: what bounds on their errors are made from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Precision {
+    /// u: what one rounding changes is at most this share of the result.
+    pub u: f64,
+    /// g: the smallest cosine between a ray and the normal of a curved face at which a hit is taken.
+    pub min_cosine: f64,
+}
+
+impl Precision {
+    /// That of binary64 numbers, for which u is half an ulp of 1.
+    pub const BINARY64: Self = Self { u: f64::EPSILON / 2.0, min_cosine: 1.0 / 512.0 };
+}
+
 /// Some binary64 numbers.
 ///
 /// What is added here to the operations of [`Numbers`] differs from backend to backend within what is said of it. It is
 /// for what is held against a bound on its error: whether a result can be relied on may depend on the machine, a result
 /// that is relied on not.
 pub trait Lanes: Numbers<Element = f64> {
+    /// How far off an operation may be.
+    const PRECISION: Precision = Precision::BINARY64;
+
+    /// u: what one rounding changes is at most this share of the result.
+    const U: f64 = Self::PRECISION.u;
+
     /// The binary32 numbers of the same backend.
     type Single: SingleLanes;
 
     /// Returns `self · factor + addend`, rounded once, or once after the product and once after the sum.
     fn mul_add(self, factor: Self, addend: Self) -> Self;
+
+    /// Returns a number that was worked out beside the lanes as it would be in one of them.
+    #[inline(always)]
+    fn rounded(number: f64) -> f64 {
+        number
+    }
 
     /// Returns what the reciprocal is at most, and at least 0.999 times: of numbers from 2⁻¹⁰⁰⁰ to 2¹⁰⁰⁰.
     fn reciprocal_bound(self) -> Self;
@@ -194,6 +222,9 @@ pub enum Backend {
     Avx2,
     /// Registers of eight.
     Avx512,
+    /// Operations that are as wrong as their precision allows, and that is a low one.
+    #[cfg(test)]
+    Coarse,
 }
 
 impl Backend {
@@ -213,6 +244,8 @@ impl Backend {
             Self::Scalar => "scalar",
             Self::Avx2 => "avx2",
             Self::Avx512 => "avx512",
+            #[cfg(test)]
+            Self::Coarse => "coarse",
         }
     }
 
@@ -221,12 +254,23 @@ impl Backend {
     pub fn is_available(self) -> bool {
         match self {
             Self::Scalar => true,
+            #[cfg(test)]
+            Self::Coarse => true,
             #[cfg(target_arch = "x86_64")]
             Self::Avx2 => avx2::is_available(),
             #[cfg(target_arch = "x86_64")]
             Self::Avx512 => avx512::is_available(),
             #[cfg(not(target_arch = "x86_64"))]
             Self::Avx2 | Self::Avx512 => false,
+        }
+    }
+
+    /// Returns how precise its lanes are.
+    pub(in crate::trace) const fn precision(self) -> Precision {
+        match self {
+            Self::Scalar | Self::Avx2 | Self::Avx512 => Precision::BINARY64,
+            #[cfg(test)]
+            Self::Coarse => Precision::COARSE,
         }
     }
 
@@ -243,6 +287,8 @@ impl Backend {
             // SAFETY: the machine has the instructions, as was just asserted.
             #[cfg(target_arch = "x86_64")]
             Self::Avx512 => unsafe { avx512::run(job) },
+            #[cfg(test)]
+            Self::Coarse => job.run::<coarse::Coarse>(),
             _ => job.run::<scalar::Lanes8>(),
         }
     }

@@ -10,11 +10,11 @@
 //! than R = r + ρ; and behind it if q < −R.
 //!
 //! *Errors*: ρ holds the error of the origins, and cos θ is lowered by that of the directions. What is computed here
-//! is off by some roundings of R, which is widened by a share of 10⁻⁹, or of |m|² where squares are compared: less than
-//! 10⁻¹²·|m|².
+//! is off by some roundings of R, which is widened by a share of 2²³u, or of |m|² where squares are compared: less than
+//! 2¹³u·|m|².
 
 use crate::plan::{ObjectLists, Scene};
-use crate::trace::kernels::{Lanes, Mask};
+use crate::trace::kernels::{Lanes, Mask, Precision};
 use crate::trace::wide::eye::MAX_LANES;
 use crate::trace::wide::queue::Rays;
 
@@ -24,11 +24,13 @@ const MAX_OBJECTS: usize = 4096;
 /// Beams with a smaller cosine are not looked at.
 const MIN_COSINE: f64 = 0.25;
 
-/// What a cosine is lowered by, and what squares are compared with, as a share of |m|².
-const SLACK: f64 = 1e-12;
+/// What a cosine is lowered by, and what squares are compared with, as a share of |m|², in units of u.
+const SLACK: f64 = 8192.0;
 
-/// What radii are multiplied with.
-const WIDEN: f64 = 1.0 + 1e-9;
+/// Returns what radii are multiplied with.
+const fn widened(precision: Precision) -> f64 {
+    1.0 + (1_u64 << 23) as f64 * precision.u
+}
 
 /// Balls around all objects, spheres first.
 #[derive(Debug, Default)]
@@ -51,17 +53,18 @@ struct Beam {
 
 impl Balls {
     /// Lists the objects of a scene, unless they are too many.
-    pub fn new(scene: &Scene<'_>) -> Self {
+    pub fn new(scene: &Scene<'_>, precision: Precision) -> Self {
+        let widen = widened(precision);
         let (s, c) = (&scene.spheres, &scene.cylinders);
         let n_balls = s.radius.len() + c.radius.len();
         if n_balls > MAX_OBJECTS {
             return Self::default();
         }
-        let spheres = (0..s.radius.len()).map(|i| [s.x[i], s.y[i], s.z[i], s.radius[i] * WIDEN]);
+        let spheres = (0..s.radius.len()).map(|i| [s.x[i], s.y[i], s.z[i], s.radius[i] * widen]);
         let cylinders = (0..c.radius.len()).map(|i| {
             let (middle, half) = (0.5 * (c.y_min[i] + c.y_max[i]), 0.5 * (c.y_max[i] - c.y_min[i]));
             let (long, short) = (c.radius[i].max(half), c.radius[i].min(half));
-            let reach = long * (1.0 + (short / long) * (short / long)).sqrt() * WIDEN;
+            let reach = long * (1.0 + (short / long) * (short / long)).sqrt() * widen;
             // The middle is off by a rounding.
             [c.x[i], middle, c.z[i], reach + 1e-15 * (c.y_min[i].abs() + c.y_max[i].abs())]
         });
@@ -117,7 +120,7 @@ impl Balls {
         let squared = m[0] * m[0] + m[1] * m[1] + m[2] * m[2];
         let along = m[0] * L::splat(beam.dir[0]) + m[1] * L::splat(beam.dir[1]) + m[2] * L::splat(beam.dir[2]);
         let along_squared = along * along;
-        let slack = squared * L::splat(SLACK);
+        let slack = squared * L::splat(SLACK * L::U);
         let allowed = (reach + along * L::splat(beam.sine)).max(L::splat(0.0));
         let across_squared = (squared - along_squared) * L::splat(beam.cosine * beam.cosine);
         let is_beside = across_squared.gt(allowed * allowed + slack);
@@ -145,8 +148,8 @@ impl Beam {
         let cosine = rays.dir[0] * L::splat(dir[0]) + rays.dir[1] * L::splat(dir[1]) + rays.dir[2] * L::splat(dir[2]);
         let turned = L::splat(1.0) - (cosine - rays.dir_error);
         let distance = largest(distance_squared, active).sqrt();
-        let cosine = 1.0 - largest(turned, active) - SLACK;
-        let radius = (distance + largest(rays.origin_error, active)) * WIDEN;
+        let cosine = 1.0 - largest(turned, active) - SLACK * L::U;
+        let radius = (distance + largest(rays.origin_error, active)) * widened(L::PRECISION);
         let is_narrow = cosine > MIN_COSINE && radius < f64::INFINITY;
         let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
         is_narrow.then_some(Self { origin: [x, y, z], dir, radius, cosine, sine })
@@ -235,7 +238,7 @@ mod tests {
                 (numbers[6][lane], numbers[7][lane]) = (error, error);
             }
             let scene = Scene::of_shapes(lanes, CylinderLanes::default());
-            let balls = Balls::new(&scene);
+            let balls = Balls::new(&scene, Precision::BINARY64);
             let active = 1 + stream.below(0xff) as u32;
             let job = || List(&balls, &numbers, active);
             let Some(found) = Backend::best().run(job()) else { continue };

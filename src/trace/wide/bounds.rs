@@ -2,7 +2,7 @@
 //! the packets work with, and how far each may be off.
 //!
 //! # Errors of eye rays
-//! u = 2⁻⁵³. The direction of an eye ray is d = (X·k, Y·k, −1) with whole X, Y; its coordinates are off by at most a
+//! What is said here holds for any [`Precision`]: u is 2⁻⁵³ for binary64. The direction of an eye ray is d = (X·k, Y·k, −1) with whole X, Y; its coordinates are off by at most a
 //! share e of themselves, which the camera knows. With κ = e + 8u every product of a coordinate of d with an exact number
 //! is within κ of the exact product, relative to it, and so is a sum of two of them relative to the product of lengths.
 //!
@@ -30,21 +30,19 @@
 use crate::ir::Surface;
 use crate::math::DoubleDouble;
 use crate::plan::{Candidates, Light, Object, Part, Plan, Scene};
+use crate::trace::kernels::Precision;
 use crate::trace::wide::cluster::Cluster;
 
-/// Half an ulp of 1: the relative error of one rounding is at most this.
-pub(super) const U: f64 = f64::EPSILON / 2.0;
-
-/// The smallest cosine between ray and normal at which a hit is taken: the silhouettes of curved faces are left to finer
-/// arithmetic.
-pub(super) const MIN_COSINE: f64 = 1.0 / 512.0;
-
-/// The same for caps, on which nothing is lost but length.
+/// The smallest cosine between ray and normal at which a hit on a cap is taken: on caps nothing is lost but length, while the
+/// silhouettes of curved faces are left to finer arithmetic from g on.
 pub(super) const MIN_CAP_COSINE: f64 = 1.0 / 16384.0;
 
-/// The largest error of a normal at which an eye ray's hit is taken: what is neglected in second order stays below a hundredth of the
-/// bounds as long as this is below a 64th of the smallest cosine.
-pub(super) const MAX_NORMAL_ERROR: f64 = 1.0 / 16_777_216.0;
+/// The largest error of a normal at which an eye ray's hit is taken, in roundings: 2⁻²⁴ of binary64.
+const MAX_NORMAL_ERROR: f64 = (1_u64 << 29) as f64;
+
+/// What is neglected in second order stays below a hundredth of the bounds as long as the error of a normal is below this
+/// share of the smallest cosine.
+const MAX_NORMAL_SHARE: f64 = 1.0 / 64.0;
 
 /// Lengths, colours and exponents beyond these are left to finer arithmetic: products of four lengths neither overflow
 /// nor lose anything to underflow that the bounds would notice.
@@ -258,9 +256,7 @@ pub(super) struct LightTerms {
 /// The constants of one image.
 #[derive(Clone, Debug)]
 pub(super) struct Bounds {
-    eye: Eye,
-    /// κ.
-    pub eye_roundoff: f64,
+    pub eye: Eye,
     /// All faces: those of spheres, then three for each cylinder, the wall, the lower and the upper cap.
     pub faces: Vec<Face>,
     pub spheres: Vec<EyeSphere>,
@@ -283,15 +279,14 @@ pub(super) struct Bounds {
 }
 
 impl Bounds {
-    /// Works out the constants of an image whose eye rays' coordinates are off by `dir_error`, relative to them.
+    /// Works out the constants of an image.
     ///
-    /// `max_slope`: at least |dy| of any eye ray. Returns `None` for scenes that are left to finer arithmetic altogether.
-    pub fn new(plan: &Plan<'_>, dir_error: f64, max_slope: f64) -> Option<Self> {
-        let scene = &plan.scene;
+    /// Returns `None` for scenes that are left to finer arithmetic altogether.
+    pub fn new(plan: &Plan<'_>, eye: Eye) -> Option<Self> {
+        let (scene, precision) = (&plan.scene, eye.precision);
         if !is_moderate(scene) {
             return None;
         }
-        let eye = Eye { roundoff: dir_error + 8.0 * U, stretch: (1.0 + max_slope * max_slope).sqrt() };
         let n_spheres = scene.spheres.radius.len();
         let mut faces = Vec::new();
         let spheres = (0..n_spheres).map(|i| eye_sphere(scene, eye, i, &mut faces)).collect::<Option<Vec<_>>>()?;
@@ -299,20 +294,20 @@ impl Bounds {
         let cylinders =
             (0..n_cylinders).map(|i| eye_cylinder(scene, eye, i, &mut faces)).collect::<Option<Vec<_>>>()?;
         let groups = group_spheres(scene, &mut faces);
-        let mirrored: Vec<_> = (0..).zip(&faces[..n_spheres]).map(MirroredSphere::new).collect();
+        let mirrored: Vec<_> =
+            (0..).zip(&faces[..n_spheres]).map(|(i, face)| MirroredSphere::new(precision, i, face)).collect();
         Some(Self {
             groups,
             has_objects: true,
             owners: owners(&faces),
-            cluster: Cluster::new(plan, &faces, &mirrored),
+            cluster: Cluster::new(plan, precision, &faces, &mirrored),
             mirrored,
             eye,
-            eye_roundoff: eye.roundoff,
             faces,
             spheres,
             cylinders,
             lights: scene.lights.iter().map(|light| seen_from(scene, light)).collect(),
-            terms: scene.surfaces.iter().map(|s| terms_of(s, &scene.lights, plan.settings.part)).collect(),
+            terms: all_terms(plan, eye.precision),
             size: usual_radius(scene),
             sphere_equations: scene.sphere_equations[..n_spheres].iter().map(|id| id.number()).collect(),
             wall_equations: scene.wall_equations[..n_cylinders].iter().map(|id| id.number()).collect(),
@@ -344,12 +339,12 @@ fn owners(faces: &[Face]) -> Vec<Option<Object>> {
 
 impl MirroredSphere {
     /// Takes what there is to know from a face, given its number among the faces.
-    fn new((number, face): (u32, &Face)) -> Self {
+    fn new(precision: Precision, number: u32, face: &Face) -> Self {
         let radius_squared = face.radius * face.radius;
         Self {
             center: face.center,
             radius_squared,
-            least: radius_squared * MIN_COSINE * MIN_COSINE,
+            least: radius_squared * precision.min_cosine * precision.min_cosine,
             is_shell: face.per_radius < 0.0,
             equation: f64::from(face.equation),
             face: number,
@@ -378,7 +373,7 @@ impl Bounds {
     ///
     /// Returns `None` when the eye is neither surely outside nor surely inside of a sphere, and for scenes that are left to
     /// finer arithmetic altogether.
-    pub fn of_crowd(plan: &Plan<'_>, dir_error: f64, max_slope: f64) -> Option<Self> {
+    pub fn of_crowd(plan: &Plan<'_>, eye: Eye) -> Option<Self> {
         let (scene, s) = (&plan.scene, &plan.scene.spheres);
         let has_side = |i: usize| {
             let (squared, radius_squared) =
@@ -394,10 +389,9 @@ impl Bounds {
             cylinders: Vec::new(),
         };
         Some(Self {
-            eye: Eye { roundoff: dir_error + 8.0 * U, stretch: (1.0 + max_slope * max_slope).sqrt() },
             lights: scene.lights.iter().map(light).collect(),
-            terms: scene.surfaces.iter().map(|s| terms_of(s, &scene.lights, plan.settings.part)).collect(),
-            ..Self::of_nothing(dir_error + 8.0 * U, usual_radius(scene))
+            terms: all_terms(plan, eye.precision),
+            ..Self::of_nothing(eye, usual_radius(scene))
         })
     }
 
@@ -422,11 +416,10 @@ impl Bounds {
         let mut faces = Vec::with_capacity(some.spheres.len() + 3 * some.cylinders.len());
         let seen = some.spheres.iter().map(|&i| eye_sphere(&plan.scene, self.eye, i as usize, &mut faces));
         let spheres = seen.collect::<Option<Vec<_>>>()?;
-        let mirrored = (0..).zip(&faces).map(MirroredSphere::new).collect();
+        let mirrored = (0..).zip(&faces).map(|(i, face)| MirroredSphere::new(self.eye.precision, i, face)).collect();
         let seen = some.cylinders.iter().map(|&i| eye_cylinder(&plan.scene, self.eye, i as usize, &mut faces));
         let cylinders = seen.collect::<Option<Vec<_>>>()?;
-        let of_nothing = Self::of_nothing(self.eye_roundoff, self.size);
-        Some(Self { eye: self.eye, faces, spheres, mirrored, cylinders, ..of_nothing })
+        Some(Self { faces, spheres, mirrored, cylinders, ..Self::of_nothing(self.eye, self.size) })
     }
 
     /// Returns the object that alone has an equation, if that is known.
@@ -435,10 +428,9 @@ impl Bounds {
         self.owners.get(equation as usize).copied().flatten()
     }
 
-    fn of_nothing(eye_roundoff: f64, size: f64) -> Self {
+    fn of_nothing(eye: Eye, size: f64) -> Self {
         Self {
-            eye: Eye { roundoff: eye_roundoff, stretch: 1.0 },
-            eye_roundoff,
+            eye,
             has_objects: false,
             groups: Vec::new(),
             faces: Vec::new(),
@@ -487,11 +479,25 @@ fn power<const N: usize>(m: [DoubleDouble; N], radius: f64) -> (f64, f64) {
 
 /// What bounds of eye rays depend on.
 #[derive(Clone, Copy, Debug)]
-struct Eye {
+pub(super) struct Eye {
     /// κ.
-    roundoff: f64,
+    pub roundoff: f64,
     /// F.
     stretch: f64,
+    /// How precise the lanes are.
+    pub precision: Precision,
+}
+
+impl Eye {
+    /// Takes note of eye rays whose coordinates are off by `dir_error`, relative to them, and at most `max_slope` steep.
+    pub fn new(precision: Precision, dir_error: f64, max_slope: f64) -> Self {
+        Self { roundoff: dir_error + 8.0 * precision.u, stretch: (1.0 + max_slope * max_slope).sqrt(), precision }
+    }
+
+    /// Returns the largest error of a normal at which a hit is taken.
+    fn max_normal_error(self) -> f64 {
+        (MAX_NORMAL_ERROR * self.precision.u).min(MAX_NORMAL_SHARE * self.precision.min_cosine)
+    }
 }
 
 /// What the eye sees of a sphere or infinite wall from outside.
@@ -522,8 +528,10 @@ fn silhouette<const N: usize>(eye: Eye, center: [f64; N], radius: f64) -> Option
     } else {
         kappa * (3.0 * (distance + radius) + 6.0 * squares / radius)
     };
-    let for_normal = error / (radius * MAX_NORMAL_ERROR);
-    let cosine_squared = (MIN_COSINE * MIN_COSINE).max(4.0 * sigma / (radius * radius)).max(for_normal * for_normal);
+    let for_normal = error / (radius * eye.max_normal_error());
+    let cosine_squared = (eye.precision.min_cosine * eye.precision.min_cosine)
+        .max(4.0 * sigma / (radius * radius))
+        .max(for_normal * for_normal);
     // Seen so badly that no hit is sure.
     let power_high =
         if cosine_squared > 0.25 { f64::INFINITY } else { power + cosine_squared * radius * radius * 1.001 };
@@ -555,9 +563,9 @@ fn eye_sphere(scene: &Scene<'_>, eye: Eye, i: usize, faces: &mut Vec<Face>) -> O
         radius,
         per_radius: if seen.is_inside { -1.0 / radius } else { 1.0 / radius },
         group: None,
-        is_vague: is_vague(point_error, radius, seen.power),
+        is_vague: is_vague(eye.precision, point_error, radius, seen.power),
         eye_point_error: point_error,
-        eye_normal_error: point_error / radius + 4.0 * U,
+        eye_normal_error: point_error / radius + 4.0 * eye.precision.u,
         eye_error_at_right_angles: seen.error,
     });
     Some(EyeSphere {
@@ -576,9 +584,10 @@ fn eye_sphere(scene: &Scene<'_>, eye: Eye, i: usize, faces: &mut Vec<Face>) -> O
 /// Tells whether an error is large beside the radius or the shortest way from the eye.
 ///
 /// `power`: of the eye; at most 2·radius times that way plus its square.
-fn is_vague(error: f64, radius: f64, power: f64) -> bool {
-    const LARGE: f64 = 1.0 / (1_u64 << 33) as f64;
-    error > LARGE * radius.min(power.abs() / radius)
+fn is_vague(precision: Precision, error: f64, radius: f64, power: f64) -> bool {
+    /// In roundings: 2⁻³³ of binary64.
+    const LARGE: f64 = (1_u64 << 20) as f64;
+    error > LARGE * precision.u * radius.min(power.abs() / radius)
 }
 
 /// Returns `None` when the eye is not surely outside.
@@ -616,14 +625,14 @@ fn eye_cylinder(scene: &Scene<'_>, eye: Eye, i: usize, faces: &mut Vec<Face>) ->
             radius,
             per_radius: 1.0 / radius,
             group: None,
-            is_vague: kind == FaceKind::Wall && is_vague(point_error, radius, power),
+            is_vague: kind == FaceKind::Wall && is_vague(eye.precision, point_error, radius, power),
             eye_point_error: point_error,
-            eye_normal_error: if kind == FaceKind::Wall { point_error / radius + 4.0 * U } else { 0.0 },
+            eye_normal_error: if kind == FaceKind::Wall { point_error / radius + 4.0 * eye.precision.u } else { 0.0 },
             eye_error_at_right_angles: error,
         });
     }
     let wall = seen.map(|seen| {
-        let slack = 2.0 * seen.error / seen.cosine + 4.0 * U * y_min.abs().max(y_max.abs());
+        let slack = 2.0 * seen.error / seen.cosine + 4.0 * eye.precision.u * y_min.abs().max(y_max.abs());
         EyeWall {
             radius_squared: radius * radius,
             is_far: seen.is_far,
@@ -719,8 +728,13 @@ fn occluder(m: [DoubleDouble; 3], power: f64, radius: f64, [y_min, y_max]: [f64;
     }
 }
 
-/// Multiplies out what a surface makes of each light.
-fn terms_of(surface: &Surface, lights: &[Light], part: Part) -> Terms {
+/// Multiplies out what each surface makes of each light.
+fn all_terms(plan: &Plan<'_>, precision: Precision) -> Vec<Terms> {
+    let Plan { scene, settings, .. } = plan;
+    scene.surfaces.iter().map(|surface| terms_of(surface, &scene.lights, settings.part, precision)).collect()
+}
+
+fn terms_of(surface: &Surface, lights: &[Light], part: Part, precision: Precision) -> Terms {
     let is_b = part == Part::B;
     let zero = glam::DVec3::ZERO;
     let (ambient, specular) = if is_b { (surface.ambient, surface.specular) } else { (zero, zero) };
@@ -752,7 +766,7 @@ fn terms_of(surface: &Surface, lights: &[Light], part: Part) -> Terms {
         steepness: shininess.max(1.0),
         reflectance: if is_b { surface.reflectance.max(0.0) } else { 0.0 },
         is_nonnegative: ambient.min_element() >= 0.0 && lights.iter().all(terms),
-        rounding: 8.0 * U * (lights.len() + 4) as f64 * total,
+        rounding: 8.0 * precision.u * (lights.len() + 4) as f64 * total,
         lights,
     }
 }

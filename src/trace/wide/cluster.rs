@@ -19,7 +19,8 @@
 //! of `mirror`.
 
 use crate::plan::{Plan, Primitive, Scene};
-use crate::trace::wide::bounds::{Face, MIN_COSINE, MirroredSphere, U};
+use crate::trace::kernels::Precision;
+use crate::trace::wide::bounds::{Face, MirroredSphere};
 
 /// More objects are not compared pair by pair.
 const MAX_OBJECTS: usize = 64;
@@ -83,7 +84,7 @@ impl Table {
 
 impl Cluster {
     /// Tells whether what mirrors of a plan show is a cluster; cylinders may lie between.
-    pub fn new(plan: &Plan<'_>, faces: &[Face], spheres: &[MirroredSphere]) -> Option<Self> {
+    pub fn new(plan: &Plan<'_>, precision: Precision, faces: &[Face], spheres: &[MirroredSphere]) -> Option<Self> {
         let scene = &plan.scene;
         if scene.n_objects() > MAX_OBJECTS {
             return None;
@@ -92,7 +93,7 @@ impl Cluster {
         let radius = |sphere: &MirroredSphere| sphere.radius_squared.sqrt();
         let min_radius = shown.iter().map(|sphere| radius(sphere)).fold(f64::INFINITY, f64::min);
         let max_radius = shown.iter().map(|sphere| radius(sphere)).fold(0.0, f64::max);
-        let overlap = 0.25 * MIN_COSINE * min_radius;
+        let overlap = 0.25 * precision.min_cosine * min_radius;
         let are_apart =
             (1..shown.len()).all(|i| shown[..i].iter().all(|other| overlap_radius(shown[i], other) <= overlap));
         if !are_apart || shown.iter().any(|sphere| sphere.is_shell) {
@@ -103,10 +104,10 @@ impl Cluster {
         let farthest_center = centers().map(|[x, y, z]| x.abs() + y.abs() + z.abs()).fold(0.0, f64::max);
         let cluster = Self {
             span,
-            radius_rounding: 16.0 * U * max_radius * max_radius,
+            radius_rounding: 16.0 * precision.u * max_radius * max_radius,
             least: shown.iter().map(|sphere| sphere.least).fold(0.0, f64::max),
-            gap: 0.125 * MIN_COSINE * min_radius,
-            hit_rounding: 8.0 * U * 1.01 * (farthest_center + 2.0 * max_radius + span),
+            gap: 0.125 * precision.min_cosine * min_radius,
+            hit_rounding: 8.0 * precision.u * 1.01 * (farthest_center + 2.0 * max_radius + span),
             table: Table::new(faces, plan.mirrored().spheres).filter(|_| plan.mirrored().cylinders.is_empty()),
         };
         (span <= MAX_SPAN * min_radius).then_some(cluster)

@@ -11,7 +11,7 @@ use crate::plan::{Candidates, CubeFace, Look, Object, ObjectLists, Part, Plan, S
 use crate::trace::kernels::{Lanes, Mask, prefetch};
 use crate::trace::look_up::{self, SideBySide};
 use crate::trace::reject::PlainRay;
-use crate::trace::wide::bounds::{Bounds, Face, Side, U, WideLight, cylinder_from, is_around_eye, sphere_from};
+use crate::trace::wide::bounds::{Bounds, Face, Side, WideLight, cylinder_from, is_around_eye, sphere_from};
 use crate::trace::wide::eye::MAX_LANES;
 use crate::trace::wide::queue::Rays;
 use crate::trace::wide::shade::{Points, dot};
@@ -68,7 +68,7 @@ impl Around {
             if !facing.any() {
                 continue;
             }
-            let off = at.point_error + w[0].abs().max(w[1].abs()).max(w[2].abs()) * L::splat(2.0 * U);
+            let off = at.point_error + w[0].abs().max(w[1].abs()).max(w[2].abs()) * L::splat(2.0 * L::U);
             let together = (facing.bits().count_ones() >= MIN_TOGETHER)
                 .then(|| look_at_once(plan, light_idx, &w, off, facing))
                 .flatten();
@@ -210,7 +210,7 @@ fn look_at_once<L: Lanes>(plan: &Plan<'_>, light_idx: usize, w: &[L; 3], off: L,
     if (lanes & !is_sound).any() {
         return None;
     }
-    let seen = Slopes::new([u, v, ahead], off, L::splat);
+    let seen = Slopes::new([u, v, ahead], off, L::U, L::splat);
     let all = [-seen.low[0], -seen.low[1], seen.high[0], seen.high[1], seen.far];
     let mut most = [f64::NEG_INFINITY; 5];
     for k in 0..5 {

@@ -85,8 +85,9 @@ pub(super) struct RowSphere {
 
 impl RowSphere {
     /// Prepares a row.
-    pub fn new(sphere: &EyeSphere, dy: f64) -> Self {
-        Self { along: sphere.center[1] * dy - sphere.center[2] }
+    #[inline(always)]
+    pub fn new<L: Lanes>(sphere: &EyeSphere, dy: f64) -> Self {
+        Self { along: L::rounded(L::rounded(sphere.center[1] * dy) - sphere.center[2]) }
     }
 }
 
@@ -135,7 +136,7 @@ pub(super) fn meet_sphere<L: Lanes>(
 #[inline(always)]
 fn far_discriminant<L: Lanes>(rays: &EyeRays<L>, sphere: &EyeSphere) -> L {
     let [cx, cy, cz] = sphere.center;
-    let x = L::splat(-cy - cz * rays.dy);
+    let x = L::splat(-cy - L::rounded(cz * rays.dy));
     let y = rays.dx * L::splat(cz) + L::splat(cx);
     let z = L::splat(cx * rays.dy) - rays.dx * L::splat(cy);
     rays.a * L::splat(sphere.radius_squared) - (x * x + y * y + z * z)
@@ -204,9 +205,9 @@ fn meet_cap<L: Lanes>(
     cap: &EyeCap,
     lanes: L::Mask,
 ) {
-    let t = cap.height / rays.dy;
+    let t = L::rounded(cap.height / rays.dy);
     let x = rays.dx * L::splat(t) - L::splat(cylinder.x);
-    let z = -t - cylinder.z;
+    let z = L::rounded(-t - cylinder.z);
     let from_axis = x * x + L::splat(z * z);
     let hit = lanes & from_axis.lt(L::splat(cap.within));
     nearest.doubt = nearest.doubt | (lanes & !(hit | from_axis.gt(L::splat(cap.beyond))));

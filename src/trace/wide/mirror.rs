@@ -18,7 +18,7 @@
 //! it by 2η, and one that is not of unit length by ζ stretches it by 4ζ.
 
 use crate::trace::kernels::{Lanes, Mask};
-use crate::trace::wide::bounds::{Bounds, Face, FaceKind, MIN_CAP_COSINE, MIN_COSINE, MirroredSphere, Terms, U};
+use crate::trace::wide::bounds::{Bounds, Face, FaceKind, MIN_CAP_COSINE, MirroredSphere, Terms};
 use crate::trace::wide::cluster::{Cluster, Table};
 use crate::trace::wide::eye::Nearest;
 use crate::trace::wide::queue::{Paths, Rays};
@@ -39,7 +39,7 @@ impl<L: Lanes> Reach<L> {
     #[inline(always)]
     fn new(bounds: &Bounds, rays: &Rays<L>) -> Self {
         let size = bounds.size;
-        let turned = rays.dir_error + L::splat(8.0 * U);
+        let turned = rays.dir_error + L::splat(8.0 * L::U);
         Self {
             along: turned * L::splat(0.5 / size),
             along_least: rays.origin_error.mul_add(L::splat(1.01), turned * L::splat(0.5 * size)),
@@ -55,7 +55,7 @@ impl<L: Lanes> Reach<L> {
 
     #[inline(always)]
     fn square(&self, m_squared: L, radius_squared: f64) -> L {
-        m_squared.mul_add(self.square, self.square_least + L::splat(16.0 * U * radius_squared))
+        m_squared.mul_add(self.square, self.square_least + L::splat(16.0 * L::U * radius_squared))
     }
 }
 
@@ -98,7 +98,7 @@ pub(super) fn meet_cluster<L: Lanes>(
     rays: &Rays<L>,
     compares: bool,
 ) -> Nearest<L> {
-    let (turned, span) = (rays.dir_error + L::splat(8.0 * U), cluster.span);
+    let (turned, span) = (rays.dir_error + L::splat(8.0 * L::U), cluster.span);
     let off = rays.origin_error.mul_add(L::splat(1.01), turned * L::splat(span));
     let slack = turned.mul_add(
         L::splat(8.0 * span * span),
@@ -230,13 +230,14 @@ fn meet_cylinder<L: Lanes>(
     let leaves_top = rays.leaving.eq(L::splat(f64::from(upper.equation))) & dy.gt(zero);
     let leaves_bottom = rays.leaving.eq(L::splat(f64::from(lower.equation))) & dy.lt(zero);
 
-    let is_proper = discriminant.gt(slack * L::splat(4.0) + L::splat(squared * MIN_COSINE * MIN_COSINE));
+    let min_cosine = L::PRECISION.min_cosine;
+    let is_proper = discriminant.gt(slack * L::splat(4.0) + L::splat(squared * min_cosine * min_cosine));
     let root = discriminant.max(zero).sqrt();
     let per_a = L::splat(1.0) / a;
     let (enter, leave) = ((b - root) * per_a, (b + root) * per_a);
-    let stretch = leave.abs() * (rays.dir_error * L::splat(2.0) + L::splat(8.0 * U));
+    let stretch = leave.abs() * (rays.dir_error * L::splat(2.0) + L::splat(8.0 * L::U));
     let slip = per_a * (off + slack / root + stretch) * L::splat(1.5);
-    let height_slip = slip + stretch + rays.origin_error * L::splat(2.0) + oy.abs() * L::splat(8.0 * U);
+    let height_slip = slip + stretch + rays.origin_error * L::splat(2.0) + oy.abs() * L::splat(8.0 * L::U);
     let (first_height, last_height) = (oy + enter * dy, oy + leave * dy);
     let (floor, ceiling) = (y_min + height_slip, y_max - height_slip);
     let (below, above) = (y_min - height_slip, y_max + height_slip);
@@ -259,7 +260,7 @@ fn meet_cylinder<L: Lanes>(
     for (lanes, height, face) in [(on_bottom, y_min, first + 1), (on_top, y_max, first + 2)] {
         if lanes.any() {
             let rise = L::splat(1.0) / dy;
-            let margin = (rays.origin_error + (height.abs() + oy.abs()) * L::splat(8.0 * U)) * rise.abs() + stretch;
+            let margin = (rays.origin_error + (height.abs() + oy.abs()) * L::splat(8.0 * L::U)) * rise.abs() + stretch;
             nearest.consider(bounds, lanes, (height - oy) * rise, margin + margin, face);
         }
     }
@@ -350,7 +351,7 @@ pub(super) fn points<L: Lanes>(
     let cosine = -dot(normal, rays.dir);
     let rounding = match (&bounds.cluster, met.kind) {
         (Some(cluster), FaceKind::Sphere) => L::splat(cluster.hit_rounding),
-        _ => (x.abs() + y.abs() + z.abs() + t) * L::splat(8.0 * U),
+        _ => (x.abs() + y.abs() + z.abs() + t) * L::splat(8.0 * L::U),
     };
     let passes_within = t.mul_add(rays.dir_error, rays.origin_error + rounding);
     let per_cosine = cosine.reciprocal_bound();
@@ -359,10 +360,10 @@ pub(super) fn points<L: Lanes>(
         // | |n|² − 1 | / 2, with what the normal's own roundings hide.
         let [nx, ny, nz] = normal;
         let excess = nx.mul_add(nx, ny.mul_add(ny, nz.mul_add(nz, -L::splat(1.0))));
-        let length_error = excess.abs().mul_add(L::splat(0.5), L::splat(8.0 * U));
+        let length_error = excess.abs().mul_add(L::splat(0.5), L::splat(8.0 * L::U));
         let point_error = length_error.mul_add(met.radius, passes_within) * (per_cosine * L::splat(1.06));
-        let normal_error = point_error.mul_add(per_radius.abs(), L::splat(4.0 * U));
-        let is_known = cosine.gt(L::splat(MIN_COSINE)) & normal_error.lt(cosine * L::splat(1.0 / 64.0));
+        let normal_error = point_error.mul_add(per_radius.abs(), L::splat(4.0 * L::U));
+        let is_known = cosine.gt(L::splat(L::PRECISION.min_cosine)) & normal_error.lt(cosine * L::splat(1.0 / 64.0));
         (point_error, normal_error, length_error, lanes & !is_known)
     } else {
         let point_error = passes_within * (per_cosine * L::splat(1.01));
@@ -389,7 +390,7 @@ pub(super) fn reflect<L: Lanes>(at: &Points<L>) -> Rays<L> {
         at.normal[1].mul_add(twice, -at.view[1]),
         at.normal[2].mul_add(twice, -at.view[2]),
     ];
-    let of_length = at.length_error.mul_add(L::splat(4.0), L::splat(16.0 * U));
+    let of_length = at.length_error.mul_add(L::splat(4.0), L::splat(16.0 * L::U));
     let of_normal = at.normal_error.mul_add(L::splat(2.05), of_length);
     let dir_error = at.dir_error.mul_add(L::splat(1.001), of_normal);
     Rays { origin: at.point, dir, origin_error: at.point_error, dir_error, leaving: at.equation }
@@ -431,6 +432,6 @@ pub(super) fn compose<L: Lanes>(paths: &Paths<L>, color: [L; 3], error: L) -> ([
         channels[k] = paths.weight.mul_add(color[k].min(one).max(zero), paths.sum[k]).min(paths.ceiling[k]);
         largest = largest.max(paths.sum[k] + paths.weight);
     }
-    let rounding = largest * (paths.level + L::splat(2.0)) * L::splat(8.0 * U);
+    let rounding = largest * (paths.level + L::splat(2.0)) * L::splat(8.0 * L::U);
     (channels, paths.weight.mul_add(error, paths.error + rounding))
 }

@@ -47,7 +47,7 @@ use crate::trace::kernels::Backend;
 use crate::trace::pixel::Sampling;
 
 use self::beam::Balls;
-use self::bounds::Bounds;
+use self::bounds::{Bounds, Eye};
 use self::cluster::Table;
 use self::crowd::{Around, Few};
 use self::eye::RowSphere;
@@ -70,6 +70,9 @@ const MAX_GONE_THROUGH: usize = 24;
 
 /// More samples along a side of a pixel are left to the slower way: a cancellation is seen between tiles.
 const MAX_SAMPLES: u32 = 16;
+
+/// Images whose eye rays' coordinates are off by a larger share, in units of u, are left to finer arithmetic.
+const MAX_DIR_ERROR: f64 = 8192.0;
 
 /// What is prepared for one image.
 #[derive(Debug)]
@@ -142,16 +145,19 @@ impl Wide {
             return None;
         }
         let is_crowd = plan.search == Search::Structures;
-        let dir_error = 1.01 * step.error() / step.value() + 2.0 * bounds::U;
+        let precision = backend.precision();
+        let dir_error = 1.01 * step.error() / step.value() + 2.0 * precision.u;
         let samples = f64::from(settings.samples);
         let max_slope = 1.01 * step.value() * samples * f64::from(settings.size.height() + 2);
         let max_side = step.value() * samples * f64::from(settings.size.width() + 2);
-        let is_moderate = step.value() > 1e-9 && max_slope < 1e6 && max_side < 1e6 && dir_error < 1e-12;
+        let is_moderate =
+            step.value() > 1e-9 && max_slope < 1e6 && max_side < 1e6 && dir_error < MAX_DIR_ERROR * precision.u;
         let background = crate::trace::pixel::bytes_of(plan.scene.background)?;
+        let eye = Eye::new(precision, dir_error, max_slope);
         let bounds = match (is_moderate, is_crowd) {
             (false, _) => return None,
-            (true, false) => Bounds::new(plan, dir_error, max_slope)?,
-            (true, true) => Bounds::of_crowd(plan, dir_error, max_slope)?.with_objects(plan),
+            (true, false) => Bounds::new(plan, eye)?,
+            (true, true) => Bounds::of_crowd(plan, eye)?.with_objects(plan),
         };
         let has_objects = bounds.has_objects;
         let n_slots = if is_crowd { 0 } else { bounds.faces.len() + bounds.groups.len() };
@@ -166,7 +172,7 @@ impl Wide {
             is_crowd,
             occluders: std::iter::repeat_with(OnceLock::new).take(n_slots).collect(),
             balls: if has_objects && plan.mirrored().len() > MAX_GONE_THROUGH {
-                Balls::new(&plan.scene)
+                Balls::new(&plan.scene, precision)
             } else {
                 Balls::default()
             },

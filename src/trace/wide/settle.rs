@@ -2,7 +2,6 @@
 //! not proved is left to finer arithmetic.
 
 use crate::trace::kernels::{Lanes, Mask};
-use crate::trace::wide::bounds::U;
 use crate::trace::wide::queue::Packet;
 use crate::trace::wide::tile::{TileJob, numbers};
 use crate::trace::wide::{TILE_PIXELS, eye, mirror, shade};
@@ -51,7 +50,7 @@ impl TileJob<'_> {
     pub fn average<L: Lanes>(&mut self) {
         let n_samples = f64::from(self.wide.samples * self.wide.samples);
         // Each sum of n numbers up to 1 loses at most n roundings of n, and the division one more.
-        let rounding = L::splat(2.0 * (n_samples + 1.0) * U);
+        let rounding = L::splat(2.0 * (n_samples + 1.0) * L::U);
         let n = L::splat(n_samples);
         for packet in 0..TILE_PIXELS / L::N {
             let mut sums = [n; 4];

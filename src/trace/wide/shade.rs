@@ -11,15 +11,16 @@
 //! - (n·H)^P is off by P times that for P ≥ 1, by the mean value theorem on 0…1, and by at most 64 times that for P < 1
 //!   where n·H > 2⁻⁶.
 
-use crate::trace::kernels::{Lanes, Mask};
-use crate::trace::wide::bounds::{Power, Terms, U, WideLight};
+use crate::trace::kernels::{Lanes, Mask, Precision};
+use crate::trace::wide::bounds::{Power, Terms, WideLight};
 use crate::trace::wide::shadow::{LightOccluders, shadow};
 
 /// Added before rounding down; the semantics fix it.
 const QUANTISATION_BIAS: f64 = 1.0 / 1_048_576.0;
 
-/// What the channels of a colour that is exact lose on their way to a byte: four roundings of numbers up to 255, widened.
-const BYTE_ROUNDING: f64 = 1.0 / (1_u64 << 42) as f64;
+/// What the channels of a colour that is exact lose on their way to a byte, in units of u: four roundings of numbers up to 255,
+/// widened.
+const BYTE_ROUNDING: f64 = 2048.0;
 
 /// The largest error of a channel that can be rounded to a byte.
 pub(super) const HALF_LEVEL: f64 = 0.5 / 255.5;
@@ -95,7 +96,7 @@ pub(super) fn shade<L: Lanes, const GREY: bool>(
     }
     let mut any_lit = none;
     let (half, one) = (L::splat(0.5), L::splat(1.0));
-    let normal_slack = at.normal_error + L::splat(8.0 * U);
+    let normal_slack = at.normal_error + L::splat(8.0 * L::U);
     let point_slack = at.point_error * L::splat(1026.0);
     for light_idx in 0..lights.len().min(terms.lights.len()) {
         let (light, light_terms) = (&lights[light_idx], &terms.lights[light_idx]);
@@ -125,8 +126,8 @@ pub(super) fn shade<L: Lanes, const GREY: bool>(
         any_lit = any_lit | lit;
         let per_distance = one / distance;
         let n_dot_l = toward * per_distance;
-        let light_slack = at.point_error.mul_add(per_distance + per_distance, L::splat(8.0 * U));
-        let diffuse_error = at.normal_error + light_slack + L::splat(16.0 * U);
+        let light_slack = at.point_error.mul_add(per_distance + per_distance, L::splat(8.0 * L::U));
+        let diffuse_error = at.normal_error + light_slack + L::splat(16.0 * L::U);
         let mut error = diffuse_error.mul_add(L::splat(light_terms.max_diffuse), colors.error);
         let mut color = add_term::<L, GREY>(n_dot_l, light_terms.diffuse, colors.color);
         if terms.has_specular {
@@ -136,8 +137,8 @@ pub(super) fn shade<L: Lanes, const GREY: bool>(
             let per_s = one / s;
             let squared = (doubled * doubled * half * per_s).min(one);
             let mut vague = lit & !s.gt(L::splat(MIN_HALF));
-            let slack = at.normal_error * L::splat(2.0) + light_slack + at.dir_error + L::splat(8.0 * U);
-            let off = slack * (half + L::splat(0.8) * per_s) + L::splat(8.0 * U);
+            let slack = at.normal_error * L::splat(2.0) + light_slack + at.dir_error + L::splat(8.0 * L::U);
+            let off = slack * (half + L::splat(0.8) * per_s) + L::splat(8.0 * L::U);
             let (power, gain) = match terms.power {
                 Power::One => (one, 0.0),
                 Power::Whole { half, is_odd } => (raise(squared, half, is_odd), terms.steepness),
@@ -149,7 +150,7 @@ pub(super) fn shade<L: Lanes, const GREY: bool>(
                 }
             };
             colors.doubt = colors.doubt | vague;
-            let specular_error = off * L::splat(gain) + L::splat((2.0 * terms.steepness.min(1e9) + 16.0) * U);
+            let specular_error = off * L::splat(gain) + L::splat((2.0 * terms.steepness.min(1e9) + 16.0) * L::U);
             error = specular_error.mul_add(L::splat(light_terms.max_specular), error);
             color = add_term::<L, GREY>(power, light_terms.specular, color);
         }
@@ -209,7 +210,7 @@ fn raise_slice(squares: &mut [f64], exponent: f64, bits: u32) {
 /// `error`: of each channel.
 #[inline(always)]
 pub(super) fn quantise<L: Lanes>(color: [L; 3], error: L) -> (L, L::Mask) {
-    let room = L::splat(0.5) - (error * L::splat(255.5) + L::splat(BYTE_ROUNDING));
+    let room = L::splat(0.5) - (error * L::splat(255.5) + L::splat(BYTE_ROUNDING * L::U));
     let (red, red_is_sure) = quantise_channel(color[0], error, room);
     let (green, green_is_sure) = quantise_channel(color[1], error, room);
     let (blue, blue_is_sure) = quantise_channel(color[2], error, room);
@@ -219,7 +220,7 @@ pub(super) fn quantise<L: Lanes>(color: [L; 3], error: L) -> (L, L::Mask) {
 
 /// Returns the bound that [`quantise`] takes for the error of 255 c.
 pub(super) fn bound_in_levels(error: f64) -> f64 {
-    if error > 0.0 { error * 255.5 + BYTE_ROUNDING } else { 0.0 }
+    if error > 0.0 { error * 255.5 + BYTE_ROUNDING * Precision::BINARY64.u } else { 0.0 }
 }
 
 /// Returns the byte of a channel, and the lanes in which it is proved.

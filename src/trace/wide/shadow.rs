@@ -8,7 +8,7 @@
 
 use crate::plan::{Object, Part, Plan};
 use crate::trace::kernels::{Lanes, Mask};
-use crate::trace::wide::bounds::{Bounds, Face, FaceKind, Occluder, Side, U, WideLight};
+use crate::trace::wide::bounds::{Bounds, Face, FaceKind, Occluder, Side, WideLight};
 use crate::trace::wide::shade::{Points, dot, splat_each};
 
 /// D must be more than this share of a·r² for the roots of a wall to be taken.
@@ -133,7 +133,7 @@ pub(super) fn shadow<L: Lanes>(
         w: *w,
         a,
         distance,
-        error: distance.mul_add(L::splat(4.0 * U), at.point_error),
+        error: distance.mul_add(L::splat(4.0 * L::U), at.point_error),
         height: at.point[1],
         light_height: light.position[1],
     };
@@ -197,7 +197,7 @@ fn behind_sphere<L: Lanes>(
             // The power of the end, a − 2b + p, is off by at most as much as D and twice a.
             let power = segment.a - b - b + L::splat(sphere.power);
             let sure = segment.error * (L::splat(sphere.m_length) + segment.distance) * L::splat(4.0);
-            let blocked = power.gt(sure + L::splat(8.0 * U * sphere.power.abs()));
+            let blocked = power.gt(sure + L::splat(8.0 * L::U * sphere.power.abs()));
             return (blocked, !blocked);
         }
         Side::InLine | Side::Open | Side::Closed | Side::Unknown => return (none, !none),
@@ -250,7 +250,7 @@ fn behind_cylinder<L: Lanes>(cylinder: &Occluder, segment: &Segment<L>, tau: L, 
     let first = light_height + enter * wy;
     let last = light_height + leave.min(one) * wy;
     let height_slip =
-        slip * wy.abs() + (segment.error + L::splat(8.0 * U * segment.light_height.abs())) * L::splat(2.0);
+        slip * wy.abs() + (segment.error + L::splat(8.0 * L::U * segment.light_height.abs())) * L::splat(2.0);
     let (floor, ceiling) = (y_min + height_slip, y_max - height_slip);
     let (below, above) = (y_min - height_slip, y_max + height_slip);
     let goes_in_before = enter.lt(one - slip);

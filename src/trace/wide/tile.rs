@@ -3,7 +3,7 @@
 use crate::plan::{Candidates, Object, Plan};
 use crate::trace::kernels::{Job, Lanes, Mask};
 use crate::trace::pixel::Sampling;
-use crate::trace::wide::bounds::{Bounds, Face, FaceKind, U};
+use crate::trace::wide::bounds::{Bounds, Face, FaceKind};
 use crate::trace::wide::eye::{self, EyeRays, Nearest, RowSphere};
 use crate::trace::wide::mirror;
 use crate::trace::wide::queue::Paths;
@@ -63,7 +63,10 @@ impl TileJob<'_> {
             self.sampling.first_sample(self.rect.columns.start + column as u32, self.rect.rows.start + row as u32);
         let (left, top) = (left + i64::from(2 * self.sample[0]), top - i64::from(2 * self.sample[1]));
         let steps = numbers::<L>() * L::splat(f64::from(2 * self.wide.samples));
-        ((L::splat(left as f64) + steps) * L::splat(self.wide.step), top as f64 * self.wide.step)
+        (
+            (L::splat(left as f64) + steps) * L::splat(self.wide.step),
+            L::rounded(top as f64 * L::rounded(self.wide.step)),
+        )
     }
 
     /// Finds what each eye ray meets first.
@@ -78,7 +81,7 @@ impl TileJob<'_> {
             let (_, dy) = self.directions::<L>(first);
             self.scratch.rows.clear();
             for &i in among.spheres {
-                self.scratch.rows.push(RowSphere::new(&bounds.spheres[i as usize], dy));
+                self.scratch.rows.push(RowSphere::new::<L>(&bounds.spheres[i as usize], dy));
             }
             for packet in first..first + n_packets {
                 let (dx, _) = self.directions::<L>(packet);
@@ -186,9 +189,9 @@ impl TileJob<'_> {
         if face.is_vague || (is_mirror && matches!(face.kind, FaceKind::Sphere | FaceKind::Wall)) {
             // Reflections multiply the error, so it is taken as it is here, not as it may be at the silhouette.
             point_error = L::splat(1.1 * face.eye_error_at_right_angles) / cosine;
-            normal_error = point_error * per_radius.abs() + L::splat(4.0 * U);
+            normal_error = point_error * per_radius.abs() + L::splat(4.0 * L::U);
         }
-        let dir_error = L::splat(2.0 * self.wide.bounds.eye_roundoff);
+        let dir_error = L::splat(2.0 * self.wide.bounds.eye.roundoff);
         let length_error = normal_error * L::splat(0.5);
         let equation = L::splat(f64::from(face.equation));
         Points { point, normal, view, cosine, point_error, normal_error, length_error, dir_error, equation, active }

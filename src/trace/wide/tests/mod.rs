@@ -1,15 +1,18 @@
 //! The bounds are honest: what packets compute lies within them of what double-double computes, and not far within.
 
+mod margins;
+
 use glam::DVec3;
 
 use super::*;
 use crate::ir::{self, Handle, Registers, SceneView, Valid};
 use crate::math::{Ball106, Vector};
-use crate::plan::{Settings, Size, plan};
+use crate::plan::{Candidates, Pass, Passes, Settings, Size, plan};
 use crate::testing::Stream;
 use crate::trace::camera::Camera;
 use crate::trace::integrator::Integrator;
 use crate::trace::kernels::{Job, Lanes, Mask};
+use crate::trace::pixel::{self, Pixel};
 use crate::trace::shade::HitPoint;
 
 /// The hits of a tile's eye rays: packets with their points.
