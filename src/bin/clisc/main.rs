@@ -39,7 +39,7 @@ fn run(cli: &Cli) -> anyhow::Result<ExitCode> {
         Command::Run(args) => commands::run::run(args),
         Command::Ir(args) => commands::ir::run(args),
         Command::Fmt(args) => commands::fmt::run(args),
-        Command::Lsp(_) => commands::lsp::run(),
+        Command::Lsp(args) => commands::lsp::run(args),
         Command::Bench(args) => commands::bench::run(args),
         Command::Explain(args) => commands::explain::run(args),
         Command::Completions(args) => commands::completions::run(args),

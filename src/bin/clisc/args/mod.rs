@@ -13,7 +13,8 @@ mod man;
 mod report;
 mod run;
 
-use clap::{Parser, Subcommand, ValueEnum};
+use clap::error::ErrorKind;
+use clap::{ArgMatches, Args, FromArgMatches, Parser, Subcommand, ValueEnum};
 
 pub use bench::BenchArgs;
 pub use check::CheckArgs;
@@ -66,29 +67,80 @@ Examples:
 
 Exit codes: 0 fine, 1 a scene has errors, 2 wrong usage or a fault outside the scene, 130 interrupted.";
 
-/// What to do.
-#[derive(Debug, Subcommand)]
-pub enum Command {
+/// Defines what clisc can do: an enum, and how clap makes one of its variants from a command line.
+///
+/// Clap's own derive describes the options of every command on each call, which takes a tenth of a millisecond. Here only those
+/// of the command that is called are described.
+macro_rules! commands {
+    ($($(#[doc = $about:literal])+ $name:literal => $command:ident($args:ty),)+) => {
+        /// What to do.
+        #[derive(Debug)]
+        pub enum Command {
+            $($(#[doc = $about])+ $command($args),)+
+        }
+
+        impl Subcommand for Command {
+            fn augment_subcommands(clisc: clap::Command) -> clap::Command {
+                $(
+                    let clisc = clisc.subcommand(
+                        clap::Command::new($name)
+                            .about(about(concat!($($about),+)))
+                            .defer(|command| <$args>::augment_args(command).about(about(concat!($($about),+)))),
+                    );
+                )+
+                clisc
+            }
+
+            fn augment_subcommands_for_update(clisc: clap::Command) -> clap::Command {
+                Self::augment_subcommands(clisc)
+            }
+
+            fn has_subcommand(name: &str) -> bool {
+                [$($name),+].contains(&name)
+            }
+        }
+
+        impl FromArgMatches for Command {
+            fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+                match matches.subcommand() {
+                    $(Some(($name, matches)) => <$args>::from_arg_matches(matches).map(Self::$command),)+
+                    _ => Err(clap::Error::new(ErrorKind::MissingSubcommand)),
+                }
+            }
+
+            fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+                Self::from_arg_matches(matches).map(|command| *self = command)
+            }
+        }
+    };
+}
+
+commands! {
     /// Checks scenes and says what is wrong with them.
-    Check(CheckArgs),
+    "check" => Check(CheckArgs),
     /// Finds what is valid in scenes and probably not meant, and mends what is safe to mend.
-    Lint(LintArgs),
+    "lint" => Lint(LintArgs),
     /// Renders scenes and saves their images.
-    Run(RunArgs),
+    "run" => Run(RunArgs),
     /// Shows what a scene becomes at a stage of the compiler.
-    Ir(IrArgs),
+    "ir" => Ir(IrArgs),
     /// Brings scenes into their canonical form.
-    Fmt(FmtArgs),
+    "fmt" => Fmt(FmtArgs),
     /// Serves an editor: the language server.
-    Lsp(LspArgs),
+    "lsp" => Lsp(LspArgs),
     /// Measures run time against error.
-    Bench(BenchArgs),
+    "bench" => Bench(BenchArgs),
     /// Explains a code, with a failing scene and its repair.
-    Explain(ExplainArgs),
+    "explain" => Explain(ExplainArgs),
     /// Prints the script by which a shell completes commands and options.
-    Completions(CompletionsArgs),
+    "completions" => Completions(CompletionsArgs),
     /// Prints or saves manual pages.
-    Man(ManArgs),
+    "man" => Man(ManArgs),
+}
+
+/// Returns the text of a doc comment as help shows it.
+fn about(doc: &'static str) -> &'static str {
+    doc.trim().trim_end_matches('.')
 }
 
 #[cfg(test)]
