@@ -94,7 +94,8 @@ fn link_statically() {
     });
     if written.is_ok() {
         println!("cargo::rustc-link-arg-bins=-L{}", folder.display());
-        println!("cargo::rustc-link-arg-bins=-static");
+        // Told `-static`, gcc would link a prologue that registers unwind tables, to be read whole at the first error.
+        println!("cargo::rustc-link-arg-bins=-Wl,--no-dynamic-linker");
         println!("cargo::rustc-link-arg-bins=-no-pie");
     }
 }
