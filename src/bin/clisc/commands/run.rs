@@ -27,8 +27,7 @@ use crate::args::{RunArgs, StatsFormat};
 use crate::disk::{self, DiskSink};
 use crate::interrupt::Interrupts;
 use crate::outcome::Outcome;
-use crate::threads::Threads;
-use crate::{input, print};
+use crate::{input, print, threads};
 
 /// Renders scenes and saves their images. A fault in one scene does not keep the others from being rendered.
 pub fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
@@ -39,6 +38,7 @@ pub fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     if args.certificate.is_some() && !settings.precision.is_proved() {
         bail!("--certificate needs --precision certified or exact: nothing else proves every pixel");
     }
+    let threads = threads::start(args.threads, &args.scenes, &settings)?;
     let interrupts = Interrupts::listen()?;
     let mut session = Session {
         args,
@@ -48,7 +48,6 @@ pub fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
         interrupts,
         sink: DiskSink::new(&args.out_dir),
         writers: HashMap::new(),
-        threads: Threads::new(args.threads, args.scenes.len()),
     };
     let mut report = StatsReport::new();
     for (scene_idx, path) in args.scenes.iter().enumerate() {
@@ -63,7 +62,7 @@ pub fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
         }
     }
     if args.stats == Some(StatsFormat::Json) {
-        report.threads = rayon::current_num_threads();
+        report.threads = threads.current_num_threads();
         print::to_stdout(&report.json()?)?;
     }
     if let Some(path) = args.certificate.as_ref().filter(|_| !args.dry_run) {
@@ -84,7 +83,6 @@ struct Session<'a> {
     certificate: Certificate,
     /// For each file which scene writes it: its place among the arguments.
     writers: HashMap<PathBuf, usize>,
-    threads: Threads,
 }
 
 impl Session<'_> {
@@ -94,7 +92,6 @@ impl Session<'_> {
     /// When results cannot be printed.
     fn run_scene(&mut self, scene_idx: usize, path: &Path) -> anyhow::Result<SceneStats> {
         let mut stats = SceneStats::new(path);
-        self.threads.start_for_file(path)?;
         let source = match input::read(path) {
             Ok(source) => source,
             Err(error) => {
@@ -104,7 +101,6 @@ impl Session<'_> {
             }
         };
         let Some(program) = self.compile(&source, &mut stats)? else { return Ok(stats) };
-        self.threads.start_for_images(&program, &self.settings)?;
         self.warn_of_shared_files(scene_idx, &program);
         let reporter = Reporter::new(self.args);
         let ended = self.execute(&program, &reporter);
