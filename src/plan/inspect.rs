@@ -8,7 +8,7 @@ use glam::DVec3;
 use rustc_hash::FxHashMap;
 
 use crate::ir::SceneView;
-use crate::math::{Ball64, Real, Sign, tan_half_degrees};
+use crate::math::{Ball64, Real, tan_half_degrees};
 use crate::plan::analysis::analyse_pairs;
 use crate::plan::apex::Outline;
 use crate::plan::bodies::Solid;
@@ -64,10 +64,10 @@ pub fn inspect(view: SceneView<'_>, settings: &Settings) -> Vec<Inspected> {
     let pixels_per_slope = pixels_per_slope(view.fov_deg(), settings);
     let inspected = |object: Object| {
         let solid = scene.solid(object);
-        let is_inside = |&light: &usize| holds(&solid, scene.lights[light].position);
+        let is_inside = |&light: &usize| solid.holds(scene.lights[light].position);
         Inspected {
             object,
-            holds_eye: holds(&solid, DVec3::ZERO),
+            holds_eye: solid.holds(DVec3::ZERO),
             lights_inside: (0..scene.lights.len()).filter(is_inside).map(|light| report.lights[light]).collect(),
             sight: sight(&solid, &frustum),
             pixels: outline_of(&solid)
@@ -96,15 +96,6 @@ pub fn inspect(view: SceneView<'_>, settings: &Settings) -> Vec<Inspected> {
 fn pixels_per_slope(fov_deg: f64, settings: &Settings) -> f64 {
     let (k, error) = tan_half_degrees(fov_deg);
     f64::from(settings.size.height()) / (2.0 * Ball64::rounded(k, error).value())
-}
-
-/// Proves, if it can, that a point lies inside, off the surface.
-fn holds(solid: &Solid, point: DVec3) -> bool {
-    let is_between = match *solid {
-        Solid::Sphere { .. } => true,
-        Solid::Cylinder { y_min, y_max, .. } => y_min < point.y && point.y < y_max,
-    };
-    is_between && solid.power(point) == Sign::Negative
 }
 
 fn sight(solid: &Solid, frustum: &Frustum) -> Sight {

@@ -14,6 +14,9 @@
 //!
 //! Such a ray leaves a convex solid outwards: the receiver does not lie on its own way to the light. A receiver that is
 //! not sealed counts as a whole, and among its occluders.
+//!
+//! What holds the light and all of the receiver inside, as a room does, is convex: no ray from one to the other meets its
+//! surface.
 
 use glam::DVec3;
 
@@ -63,6 +66,8 @@ pub(super) fn find_occluders(
         .iter()
         .map(|light| solids.iter().map(|solid| Cone::new(solid, light.position)).collect())
         .collect();
+    let rooms = scene.lights.iter().map(|light| solids.iter().map(|solid| solid.holds(light.position)).collect());
+    let rooms: Vec<Vec<bool>> = rooms.collect();
     let mut shadows = Shadows { lights: Vec::with_capacity(solids.len()), occluders: ListTable::new(n_spheres) };
     for (receiver, primitive) in scene.primitives().enumerate() {
         let mut lights = Vec::new();
@@ -74,6 +79,7 @@ pub(super) fn find_occluders(
                 _ if part == Part::A => Vec::new(),
                 _ => beside(&cones[light_idx as usize], receiver)
                     .filter(|&i| i != receiver || !roles.sealed[i])
+                    .filter(|&i| !(rooms[light_idx as usize][i] && solids[i].contains(&solids[receiver])))
                     .collect(),
             };
             match &facing {

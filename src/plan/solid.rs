@@ -52,6 +52,15 @@ impl Solid {
         }
     }
 
+    /// Proves, if it can, that a point lies inside, not on the surface.
+    pub fn holds(&self, point: DVec3) -> bool {
+        let is_between = match *self {
+            Self::Sphere { .. } => true,
+            Self::Cylinder { y_min, y_max, .. } => y_min < point.y && point.y < y_max,
+        };
+        is_between && self.power(point) == Sign::Negative
+    }
+
     /// Returns on which side of the sphere or of the infinite wall a point lies: positive is outside.
     pub fn power(&self, point: DVec3) -> Sign {
         let exact = Ball64::exact;
