@@ -638,17 +638,17 @@ fn on_long_surfaces(random: &mut Random) -> Sketch {
     let fov_deg = random.pick(&[60.0, 90.0, 110.0]);
     let mut sketch = random.sketch(fov_deg);
     random.lights(&mut sketch, 1);
-    for _ in 0..1 + random.below(2) {
+    // The eye lies on it, or off it by 2⁻¹²¹.
+    let aside = 1.0 / (1u64 << 60) as f64;
+    let ([x, z], radius) = random.long_offset_across();
+    sketch.surface(random.finish()).sphere([x, random.pick(&[0.0, aside, -aside]), z], radius);
+    sketch.surface(random.finish());
+    if random.chance(0.5) {
         let ([x, y, z], radius) = random.long_offset();
-        sketch.surface(random.finish());
-        let radius = random.pick(&[radius, radius, radius.next_down(), radius.next_up()]);
-        if random.chance(0.6) {
-            sketch.sphere([x, y, z], radius);
-        } else {
-            let ([x, z], radius) = random.long_offset_across();
-            let ends = random.pick(&[[-1.0, 1.0], [0.0, 1.0], [-1.0, 0.0]]);
-            sketch.cylinder(radius, [x, z], ends);
-        }
+        sketch.sphere([x, y, z], random.pick(&[radius, radius.next_down(), radius.next_up()]));
+    } else {
+        let ([x, z], radius) = random.long_offset_across();
+        sketch.cylinder(radius, [x, z], random.pick(&[[-1.0, 1.0], [0.0, 1.0], [-1.0, 0.0]]));
     }
     for _ in 0..2 {
         // A coarse place, so that its sums with long offsets are exact.
