@@ -150,6 +150,18 @@ mod tests {
         assert_eq!(sum.compare_zero(), Ordering::Equal);
     }
 
+    #[test]
+    fn the_square_of_a_sum_that_no_binary64_holds_is_exact() {
+        let small = libm::ldexp(1.0, -60);
+        let mut sum = Expansion::new();
+        assert!(sum.add_square(1.0, small, 1.0));
+        sum.add(-1.0);
+        sum.add(-2.0 * small);
+        assert_eq!(sum.compare_zero(), Ordering::Greater, "(1 + e)² is above 1 + 2e");
+        sum.add(-small * small);
+        assert_eq!(sum.compare_zero(), Ordering::Equal);
+    }
+
     /// A point of whole numbers and its distance from 0, whole too, by Lebesgue's identity; of `bits` + 4 bits at most.
     fn whole_quadruple(stream: &mut Stream, bits: i32) -> ([f64; 3], f64) {
         let [m, n, p, q] = [0; 4].map(|_| stream.below(1 << (bits / 2)) as f64);
