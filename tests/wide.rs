@@ -115,6 +115,10 @@ fn cluster(stream: &mut Stream) -> String {
     };
     let mut text = format!("background {}\n", color(1.0));
     let (light, ambient, diffuse, specular) = (color(1.0), color(0.2), color(0.8), color(0.5));
+    // Through a narrow view the rays of neighbouring pixels stay together for long.
+    let narrow = any(0.1, 1.0);
+    text += &format!("fov {}\n", narrow * narrow * narrow * 80.0);
+    let specular = if any(0.0, 1.0) < 0.5 { "0 0 0".to_owned() } else { specular };
     let [x, y, z] = [(); 3].map(|()| any(-3.0, 3.0) * spacing);
     text += &format!("light {light} {x} {y} {z}\nlight {light} 0 {} 0\n", 5.0 * spacing);
     text += &format!("surface {ambient} {diffuse} {specular} 20 {}\n", any(0.3, 1.0));

@@ -2,7 +2,7 @@
 //!
 //! A tile goes through four stages ([`tile`]). Its eye rays find what they meet first ([`eye`]); the hits are shaded, face by
 //! face ([`shade`], [`shadow`]); mirrors send rays on ([`mirror`]), which wait until a batch of them is followed ([`queue`],
-//! [`follow`]); what has found its colour is settled ([`settle`]). The bounds on all errors are worked out once for an image
+//! [`follow`]), or are followed at once as long as they stay together ([`flock`], [`flight`], [`horizon`]); what has found its colour is settled ([`settle`]). The bounds on all errors are worked out once for an image
 //! ([`bounds`]), where they can be, and carried with the rays where not. A pixel of which every comparison and the rounding
 //! of every channel is decided beyond them is the pixel that exact arithmetic gives. Every other pixel is left to
 //! `pixel::settle`: silhouettes, edges of shadows, colours at a step, and what is not dealt with here at all. So nothing here
@@ -23,7 +23,10 @@ mod cluster;
 mod crowd;
 mod eye;
 pub(super) mod fault;
+mod flight;
+mod flock;
 mod follow;
+mod horizon;
 mod mirror;
 pub(super) mod notes;
 mod queue;
@@ -52,6 +55,7 @@ use self::cluster::Table;
 use self::crowd::{Around, Few};
 use self::eye::RowSphere;
 use self::fault::Fault;
+use self::flock::Flock;
 use self::notes::Notes;
 use self::queue::{Channels, Packet, Waiting};
 use self::shadow::LightOccluders;
@@ -94,6 +98,8 @@ pub(super) struct Wide {
     channels: Channels,
     /// Whether all that mirrors show are spheres of a cluster, of one surface which is grey.
     shows_grey_cluster: bool,
+    /// What is known of the cluster, if packets of its rays may go together.
+    flock: Option<Flock>,
     /// What a test makes wrong.
     pub fault: Fault,
 }
@@ -164,8 +170,13 @@ impl Wide {
         let are_equal = bounds.terms.iter().all(|terms| terms.reflectance == 0.0 || terms.is_grey());
         let table = bounds.cluster.as_ref().and_then(|cluster| cluster.table.as_ref());
         let is_grey = |table: &Table| bounds.terms[bounds.faces[table.face].surface].is_grey();
+        let flock = match (&bounds.cluster, table) {
+            (Some(cluster), Some(table)) if are_equal => Flock::new(plan, &bounds, cluster, table),
+            _ => None,
+        };
         Some(Self {
             backend,
+            flock,
             shows_grey_cluster: are_equal && table.is_some_and(is_grey),
             bounds,
             channels: if are_equal { Channels::Equal } else { Channels::Three },

@@ -97,6 +97,18 @@ impl LightOccluders {
     }
 }
 
+impl LightOccluders {
+    /// Tells whether a light is hidden from all of the face.
+    pub fn is_hidden(&self, light_idx: usize) -> bool {
+        self.hidden[light_idx]
+    }
+
+    /// Returns the spheres and the cylinders that can hide a light.
+    pub fn of_light(&self, light_idx: usize) -> &[Vec<u32>; 2] {
+        &self.lists[light_idx]
+    }
+}
+
 /// Tells whether a cap is level with or beyond the top of a cylinder, and the light too; or the bottom.
 pub(super) fn is_behind_cap(cylinder: &Occluder, light_height: f64, face: &Face) -> bool {
     let height = face.center[1];

@@ -57,7 +57,7 @@ impl Job for TileJob<'_> {
 impl TileJob<'_> {
     /// Returns dx of the packet's eye rays and dy of its row.
     #[inline(always)]
-    fn directions<L: Lanes>(&self, packet: usize) -> (L, f64) {
+    pub fn directions<L: Lanes>(&self, packet: usize) -> (L, f64) {
         let (column, row) = (packet * L::N % TILE_WIDTH, packet * L::N / TILE_WIDTH);
         let (left, top) =
             self.sampling.first_sample(self.rect.columns.start + column as u32, self.rect.rows.start + row as u32);
@@ -144,6 +144,11 @@ impl TileJob<'_> {
     /// Shades a packet of hits of eye rays.
     #[inline(always)]
     fn shade_packet<L: Lanes>(&mut self, hit: PacketHit) {
+        if let Some(flock) = &self.wide.flock
+            && self.follow_flock::<L>(flock, hit)
+        {
+            return;
+        }
         let (packet, lanes) = (hit.packet as usize, L::Mask::from_bits(hit.lanes));
         let face = &self.bounds.faces[hit.face as usize];
         let terms = &self.wide.bounds.terms[face.surface];
@@ -279,7 +284,7 @@ pub(super) fn numbers<L: Lanes>() -> L {
 
 /// Returns what becomes of the colours that eye rays find: they are those of the pixels.
 #[inline(always)]
-fn eye_paths<L: Lanes>(packet: usize) -> Paths<L> {
+pub(super) fn eye_paths<L: Lanes>(packet: usize) -> Paths<L> {
     let (zero, one) = (L::splat(0.0), L::splat(1.0));
     let pixel = numbers::<L>() + L::splat((packet * L::N) as f64);
     Paths { sum: [zero; 3], ceiling: [one; 3], weight: one, error: zero, pixel, level: zero }
