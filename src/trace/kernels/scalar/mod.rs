@@ -5,9 +5,10 @@ pub(super) mod single;
 /// Declares lanes of numbers, and their truths, a bit each. The rest of this file reads like the formulas.
 ///
 /// An operation is a loop that the compiler turns into a few instructions. It must do so before the operation becomes part
-/// of a kernel (so `inline`, not `inline(always)`): thousands of loops in one function would take it minutes.
+/// of a kernel (so `inline`, not `inline(always)`): thousands of loops in one function would take it minutes. With
+/// `inline(never)` it stays out of kernels, which then compile three times as soon.
 macro_rules! scalar_lanes {
-    ($lanes:ident: [$number:ident; $n:literal], $mask:ident: $bits:ident) => {
+    ($inline:meta, $lanes:ident: [$number:ident; $n:literal], $mask:ident: $bits:ident) => {
         use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
         use crate::trace::kernels::{Mask, Numbers};
@@ -21,7 +22,7 @@ macro_rules! scalar_lanes {
         pub(in crate::trace::kernels) struct $mask($bits);
 
         impl $lanes {
-            #[inline]
+            #[$inline]
             fn map(mut self, f: impl Fn($number) -> $number) -> Self {
                 for lane in &mut self.0 {
                     *lane = f(*lane);
@@ -29,7 +30,7 @@ macro_rules! scalar_lanes {
                 self
             }
 
-            #[inline]
+            #[$inline]
             fn zip(mut self, other: Self, f: impl Fn($number, $number) -> $number) -> Self {
                 for (lane, other) in self.0.iter_mut().zip(other.0) {
                     *lane = f(*lane, other);
@@ -37,7 +38,7 @@ macro_rules! scalar_lanes {
                 self
             }
 
-            #[inline]
+            #[$inline]
             fn compare(self, other: Self, f: impl Fn($number, $number) -> bool) -> $mask {
                 let mut bits = 0;
                 for i in 0..$n {
@@ -50,7 +51,7 @@ macro_rules! scalar_lanes {
         impl Add for $lanes {
             type Output = Self;
 
-            #[inline]
+            #[$inline]
             fn add(self, other: Self) -> Self {
                 self.zip(other, |a, b| a + b)
             }
@@ -59,7 +60,7 @@ macro_rules! scalar_lanes {
         impl Sub for $lanes {
             type Output = Self;
 
-            #[inline]
+            #[$inline]
             fn sub(self, other: Self) -> Self {
                 self.zip(other, |a, b| a - b)
             }
@@ -68,7 +69,7 @@ macro_rules! scalar_lanes {
         impl Mul for $lanes {
             type Output = Self;
 
-            #[inline]
+            #[$inline]
             fn mul(self, other: Self) -> Self {
                 self.zip(other, |a, b| a * b)
             }
@@ -77,7 +78,7 @@ macro_rules! scalar_lanes {
         impl Div for $lanes {
             type Output = Self;
 
-            #[inline]
+            #[$inline]
             fn div(self, other: Self) -> Self {
                 self.zip(other, |a, b| a / b)
             }
@@ -86,7 +87,7 @@ macro_rules! scalar_lanes {
         impl Neg for $lanes {
             type Output = Self;
 
-            #[inline]
+            #[$inline]
             fn neg(self) -> Self {
                 self.map(|a| -a)
             }
@@ -99,22 +100,22 @@ macro_rules! scalar_lanes {
 
             type Element = $number;
 
-            #[inline]
+            #[$inline]
             fn splat(number: f64) -> Self {
                 Self([number as $number; $n])
             }
 
-            #[inline]
+            #[$inline]
             fn load(from: &[$number]) -> Self {
                 Self(std::array::from_fn(|i| from[..$n][i]))
             }
 
-            #[inline]
+            #[$inline]
             fn store(self, to: &mut [$number]) {
                 to[..$n].copy_from_slice(&self.0);
             }
 
-            #[inline]
+            #[$inline]
             fn store_packed(self, mask: $mask, to: &mut [$number]) {
                 let to = &mut to[..$n];
                 let mut n = 0;
@@ -126,7 +127,7 @@ macro_rules! scalar_lanes {
                 }
             }
 
-            #[inline]
+            #[$inline]
             fn store_whole(self, mask: $mask, to: &mut [u32]) {
                 let to = &mut to[..$n];
                 for (i, lane) in self.0.into_iter().enumerate() {
@@ -136,59 +137,59 @@ macro_rules! scalar_lanes {
                 }
             }
 
-            #[inline]
+            #[$inline]
             fn sqrt(self) -> Self {
                 self.map(<$number>::sqrt)
             }
 
-            #[inline]
+            #[$inline]
             fn floor(self) -> Self {
                 self.map(<$number>::floor)
             }
 
-            #[inline]
+            #[$inline]
             fn abs(self) -> Self {
                 self.map(<$number>::abs)
             }
 
-            #[inline]
+            #[$inline]
             fn min(self, other: Self) -> Self {
                 self.zip(other, |a, b| if a < b { a } else { b })
             }
 
-            #[inline]
+            #[$inline]
             fn max(self, other: Self) -> Self {
                 self.zip(other, |a, b| if a > b { a } else { b })
             }
 
-            #[inline]
+            #[$inline]
             fn lt(self, other: Self) -> $mask {
                 self.compare(other, |a, b| a < b)
             }
 
-            #[inline]
+            #[$inline]
             fn le(self, other: Self) -> $mask {
                 self.compare(other, |a, b| a <= b)
             }
 
-            #[inline]
+            #[$inline]
             fn eq(self, other: Self) -> $mask {
                 self.compare(other, |a, b| a == b)
             }
 
-            #[inline]
+            #[$inline]
             fn select(mask: $mask, yes: Self, no: Self) -> Self {
                 Self(std::array::from_fn(|i| if mask.0 >> i & 1 != 0 { yes.0[i] } else { no.0[i] }))
             }
         }
 
         impl Mask for $mask {
-            #[inline]
+            #[$inline]
             fn from_bits(bits: u32) -> Self {
                 Self(bits as $bits)
             }
 
-            #[inline]
+            #[$inline]
             fn bits(self) -> u32 {
                 self.0.into()
             }
@@ -197,7 +198,7 @@ macro_rules! scalar_lanes {
         impl BitAnd for $mask {
             type Output = Self;
 
-            #[inline]
+            #[$inline]
             fn bitand(self, other: Self) -> Self {
                 Self(self.0 & other.0)
             }
@@ -206,7 +207,7 @@ macro_rules! scalar_lanes {
         impl BitOr for $mask {
             type Output = Self;
 
-            #[inline]
+            #[$inline]
             fn bitor(self, other: Self) -> Self {
                 Self(self.0 | other.0)
             }
@@ -215,7 +216,7 @@ macro_rules! scalar_lanes {
         impl Not for $mask {
             type Output = Self;
 
-            #[inline]
+            #[$inline]
             fn not(self) -> Self {
                 Self(!self.0)
             }
@@ -225,7 +226,10 @@ macro_rules! scalar_lanes {
 
 pub(super) use scalar_lanes;
 
-scalar_lanes!(Lanes8: [f64; 8], Mask8: u8);
+#[cfg(debug_assertions)]
+scalar_lanes!(inline(never), Lanes8: [f64; 8], Mask8: u8);
+#[cfg(not(debug_assertions))]
+scalar_lanes!(inline, Lanes8: [f64; 8], Mask8: u8);
 
 impl crate::trace::kernels::Lanes for Lanes8 {
     type Single = single::Lanes16;

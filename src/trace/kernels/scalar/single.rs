@@ -3,7 +3,10 @@
 use crate::trace::kernels::SingleLanes;
 use crate::trace::kernels::scalar::scalar_lanes;
 
-scalar_lanes!(Lanes16: [f32; 16], Mask16: u16);
+#[cfg(debug_assertions)]
+scalar_lanes!(inline(never), Lanes16: [f32; 16], Mask16: u16);
+#[cfg(not(debug_assertions))]
+scalar_lanes!(inline, Lanes16: [f32; 16], Mask16: u16);
 
 impl SingleLanes for Lanes16 {
     #[inline]
