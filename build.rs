@@ -16,14 +16,14 @@ use std::{env, fs};
 const DIGITS: usize = 12;
 
 /// The libraries that rustc asks the linker for, each with the static ones that hold the same.
-const LIBRARIES: [(&str, &str); 7] = [
-    ("gcc_s", "GROUP(libgcc_eh.a libgcc.a libc.a)"),
-    ("c", "INPUT(libc.a)"),
-    ("m", "INPUT(libm.a)"),
-    ("dl", "INPUT(libdl.a)"),
-    ("pthread", "INPUT(libpthread.a)"),
-    ("rt", "INPUT(librt.a)"),
-    ("util", "INPUT(libutil.a)"),
+const LIBRARIES: [(&str, &[&str]); 7] = [
+    ("gcc_s", &["libgcc_eh.a", "libgcc.a", "libc.a"]),
+    ("c", &["libc.a"]),
+    ("m", &["libm.a"]),
+    ("dl", &["libdl.a"]),
+    ("pthread", &["libpthread.a"]),
+    ("rt", &["librt.a"]),
+    ("util", &["libutil.a"]),
 ];
 
 /// Set to `dynamic`, the program is linked like any other.
@@ -78,20 +78,21 @@ fn is_linked_statically() -> bool {
 /// Tells whether the linker knows every static library: some systems have packages of their own for them.
 fn has_libraries() -> bool {
     let linker = env::var("RUSTC_LINKER").unwrap_or_else(|_| "cc".to_owned());
-    let is_there = |library: &str| {
+    let is_there = |library: &&str| {
         let output = Command::new(&linker).arg(format!("-print-file-name={library}")).output();
         // An unknown library is answered by its bare name.
         output.is_ok_and(|output| Path::new(String::from_utf8_lossy(&output.stdout).trim()).is_absolute())
     };
-    ["libgcc_eh.a", "libc.a", "libm.a", "libdl.a", "libpthread.a", "librt.a", "libutil.a"].into_iter().all(is_there)
+    LIBRARIES.iter().flat_map(|(_, libraries)| *libraries).all(is_there)
 }
 
 /// Puts scripts that name the static libraries where the linker looks for the dynamic ones first.
 fn link_statically() {
     let folder = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets it")).join("libraries");
-    let written = fs::create_dir_all(&folder).and_then(|()| {
-        LIBRARIES.into_iter().try_for_each(|(name, script)| fs::write(folder.join(format!("lib{name}.so")), script))
-    });
+    let write = |(name, libraries): (&str, &[&str])| {
+        fs::write(folder.join(format!("lib{name}.so")), format!("GROUP({})", libraries.join(" ")))
+    };
+    let written = fs::create_dir_all(&folder).and_then(|()| LIBRARIES.into_iter().try_for_each(write));
     if written.is_ok() {
         println!("cargo::rustc-link-arg-bins=-L{}", folder.display());
         // Told `-static`, gcc would link a prologue that registers unwind tables, to be read whole at the first error.
