@@ -1,12 +1,13 @@
 //! The wide tracer: packets of pixels in plain binary64, with bounds that are known beforehand.
 //!
-//! A tile goes through four stages ([`tile`]). Its eye rays find what they meet first ([`eye`]); the hits are shaded, face by
-//! face ([`shade`], [`shadow`]); mirrors send rays on ([`mirror`]), which wait until a batch of them is followed ([`queue`],
-//! [`follow`]), or are followed at once as long as they stay together ([`flock`], [`flight`], [`horizon`]); what has found its colour is settled ([`settle`]). The bounds on all errors are worked out once for an image
-//! ([`bounds`]), where they can be, and carried with the rays where not. A pixel of which every comparison and the rounding
-//! of every channel is decided beyond them is the pixel that exact arithmetic gives. Every other pixel is left to
-//! `pixel::settle`: silhouettes, edges of shadows, colours at a step, and what is not dealt with here at all. So nothing here
-//! has to be right about a hard case, only about what is easy.
+//! A tile goes through four stages ([`tile`]). Its eye rays find what they meet first ([`eye`]); the hits are shaded,
+//! face by face ([`shade`], [`shadow`]); mirrors send rays on ([`mirror`]), which wait until a batch of them is
+//! followed ([`queue`], [`follow`]), or are followed at once as long as they stay together ([`flock`], [`flight`],
+//! [`horizon`]); what has found its colour is settled ([`settle`]). The bounds on all errors are worked out once for an
+//! image ([`bounds`]), where they can be, and carried with the rays where not. A pixel of which every comparison and
+//! the rounding of every channel is decided beyond them is the pixel that exact arithmetic gives. Every other pixel is
+//! left to `pixel::settle`: silhouettes, edges of shadows, colours at a step, and what is not dealt with here at all.
+//! So nothing here has to be right about a hard case, only about what is easy.
 //!
 //! The colour of a mirror's pixel is composed on the way in: it is min(A + B·x, H) for the colour x that is still to be
 //! found, because no term of these mirrors is negative.
