@@ -1,25 +1,32 @@
 //! A cube of grids around a point: what lies between the point and others.
 //!
-//! The point looks along each axis in both directions, through the six faces of a cube. What it sees through a face is
-//! sorted into grids ([`Grid`]), as [`Spot`]s. A query goes through the face of its largest coordinate, where both slopes
+//! The point looks along each axis in both directions, through the six faces of a cube. What it sees through a face (see
+//! `seen`) is sorted into strips and those into grids ([`Grid`]), as [`Spot`]s. A query goes through the face of its largest coordinate, where both slopes
 //! are at most 1; its error may add a little, which faces overlap by ([`LIMIT`]).
 
-use std::ops::{Add, Div, Mul, Neg, Range, RangeInclusive, Sub};
+use std::ops::{Add, Div, Mul, Neg, RangeInclusive, Sub};
 
 use rayon::prelude::*;
 
+use crate::plan::apex::ROUNDOFF;
 use crate::plan::apex::grid::{Axis, Grid, Query, Spot, cell};
-use crate::plan::apex::{Outline, ROUNDOFF};
+use crate::plan::apex::seen::{LIMIT, for_each_spot};
 use crate::plan::{Object, Scene};
 
-/// Faces reach to slopes of this, 1 + 2⁻¹⁰.
-const LIMIT: f64 = 1.0 + 1.0 / 1024.0;
-
 /// Objects that a thread takes at a time.
-const OBJECTS_PER_TASK: usize = 1 << 14;
+const OBJECTS_PER_TASK: usize = 1 << 12;
 
 /// Objects from which on a face is cut into strips for several threads.
 const STRIPS_FROM: usize = 1 << 14;
+
+/// Objects that are looked at to choose what a face is cut into, at least, if there are as many.
+const N_SAMPLES: usize = 1 << 12;
+
+/// A face that fewer of these see is not cut to what they show.
+const MIN_SAMPLES: usize = 1 << 9;
+
+/// Strips of a face for each thread, so that no thread waits long for another.
+const STRIPS_PER_THREAD: u32 = 4;
 
 /// Queries that look into more cells together are made one by one.
 const MAX_CELLS_AT_ONCE: usize = 4;
@@ -46,13 +53,21 @@ pub struct CubeFace(usize);
 
 /// Which coordinates a face looks across and ahead, and whether ahead is backward.
 #[derive(Clone, Copy)]
-struct Frame {
-    across: [usize; 2],
-    ahead: usize,
-    is_backward: bool,
+pub(super) struct Frame {
+    pub across: [usize; 2],
+    pub ahead: usize,
+    pub is_backward: bool,
 }
 
 impl CubeFace {
+    /// How many there are.
+    pub(super) const N: usize = 6;
+
+    /// Returns the face of an index below [`CubeFace::N`].
+    pub(super) const fn nth(i: usize) -> Self {
+        Self(i)
+    }
+
     /// Returns the face of the largest coordinate.
     #[inline]
     #[must_use]
@@ -75,9 +90,9 @@ impl CubeFace {
         [v[i], v[j], if is_backward { -v[ahead] } else { v[ahead] }]
     }
 
-    /// Cylinders stand along y, which is the second axis across where it can be.
+    /// Returns the coordinates across and ahead. Cylinders stand along y, which is the second axis across where it can be.
     #[inline]
-    fn frame(self) -> Frame {
+    pub(super) fn frame(self) -> Frame {
         let (across, ahead) = [([2, 1], 0), ([0, 2], 1), ([0, 1], 2)][self.0 / 2];
         Frame { across, ahead, is_backward: self.0 % 2 == 1 }
     }
@@ -125,14 +140,31 @@ impl Cube {
     /// Sorts the objects of a scene into the grids around a point.
     pub fn new(scene: &Scene<'_>, apex: [f64; 3]) -> Self {
         let n_objects = scene.spheres.radius.len() + scene.cylinders.radius.len();
-        let chunk = |i: usize| i * OBJECTS_PER_TASK..n_objects.min((i + 1) * OBJECTS_PER_TASK);
-        let n_chunks = n_objects.div_ceil(OBJECTS_PER_TASK);
-        let chunks: Vec<_> = (0..n_chunks).into_par_iter().map(|i| Seen::new(scene, apex, chunk(i))).collect();
-        let mut faces: [Face; 6] = std::array::from_fn(|face| Face::new(&chunks, face));
-        let tasks: Vec<_> = (faces.iter().enumerate())
-            .flat_map(|(face, Face { strips, .. })| (0..strips.cells()).map(move |strip| (face, strip)))
-            .collect();
-        let grids: Vec<_> = tasks.par_iter().map(|&(face, strip)| faces[face].sort(&chunks, face, strip)).collect();
+        let mut faces = choose_strips(scene, apex, n_objects);
+        let mut places = [0; CubeFace::N];
+        let mut tasks = Vec::new();
+        for (face, Face { strips, .. }) in faces.iter().enumerate() {
+            places[face] = tasks.len();
+            tasks.extend((0..strips.cells()).map(|strip| (face, strip)));
+        }
+        let sort = |i: usize| {
+            let objects = i * OBJECTS_PER_TASK..n_objects.min((i + 1) * OBJECTS_PER_TASK);
+            let mut lists = vec![Vec::new(); tasks.len()];
+            for_each_spot(scene, apex, objects, |face, spot| {
+                for strip in faces[face].strips_between(spot.low[1].into(), spot.high[1].into()) {
+                    push(&mut lists[places[face] + strip], spot);
+                }
+            });
+            lists.iter_mut().for_each(Vec::shrink_to_fit);
+            lists
+        };
+        let chunks: Vec<_> = (0..n_objects.div_ceil(OBJECTS_PER_TASK)).into_par_iter().map(sort).collect();
+        let make = |(list, &(face, strip)): (usize, &(usize, usize))| {
+            let parts: Vec<_> = chunks.iter().map(|lists| &lists[list][..]).filter(|part| !part.is_empty()).collect();
+            Grid::new(&parts, [faces[face].width, faces[face].strips.range(strip)])
+        };
+        // One strip may be all the work.
+        let grids: Vec<_> = tasks.par_iter().enumerate().with_max_len(1).map(make).collect();
         for ((face, _), grid) in tasks.into_iter().zip(grids) {
             faces[face].grids.push(grid);
         }
@@ -244,89 +276,6 @@ fn query(to_point: [f64; 3], error: f64) -> Option<(usize, Query)> {
     Some((face.0, Slopes::new(way, error, ROUNDOFF, |number| number).query()))
 }
 
-/// Appends a sphere to the faces that see it.
-fn add_sphere(scene: &Scene<'_>, apex: [f64; 3], i: usize, faces: &mut [Vec<Spot>; 6]) {
-    let spheres = &scene.spheres;
-    let center = [spheres.x[i] - apex[0], spheres.y[i] - apex[1], spheres.z[i] - apex[2]];
-    // The subtraction may have moved the centre; a sphere that is larger by as much holds the exact one.
-    let moved = ROUNDOFF * center.map(f64::abs).iter().sum::<f64>();
-    let radius = (spheres.radius[i] + 2.0 * moved) * (1.0 + 4.0 * ROUNDOFF);
-    for axis in 0..3 {
-        let [u, v, ahead] = CubeFace(2 * axis).look(center);
-        let across = u.abs().max(v.abs());
-        for (face, ahead) in [(2 * axis, ahead), (2 * axis + 1, -ahead)] {
-            // Beyond the plane slope = LIMIT, from which the centre is this far times √2.
-            if across - LIMIT * ahead <= 1.5 * radius {
-                let outline = Outline::of_sphere([u, v, ahead], radius);
-                faces[face].extend(outline.and_then(|outline| spot(&outline, i as u32)));
-            }
-        }
-    }
-}
-
-/// Appends a cylinder to the faces that see it.
-fn add_cylinder(scene: &Scene<'_>, apex: [f64; 3], i: usize, object: u32, faces: &mut [Vec<Spot>; 6]) {
-    let cylinders = &scene.cylinders;
-    let axis = [cylinders.x[i] - apex[0], 0.0, cylinders.z[i] - apex[2]];
-    let moved = ROUNDOFF * (axis[0].abs() + axis[2].abs());
-    let radius = (cylinders.radius[i] + 2.0 * moved) * (1.0 + 4.0 * ROUNDOFF);
-    let heights = [(cylinders.y_min[i] - apex[1]).next_down(), (cylinders.y_max[i] - apex[1]).next_up()];
-    for (face, spots) in faces.iter_mut().enumerate() {
-        let face = CubeFace(face);
-        let (frame, [u, v, ahead]) = (face.frame(), face.look(axis));
-        let outline = match (frame.ahead, frame.is_backward) {
-            (1, false) => Outline::of_cylinder_from_below([u, v], radius, heights),
-            (1, true) => Outline::of_cylinder_from_below([u, v], radius, [-heights[1], -heights[0]]),
-            _ => Outline::of_upright_cylinder([u, ahead], radius, heights),
-        };
-        spots.extend(outline.and_then(|outline| spot(&outline, object)));
-    }
-}
-
-/// Returns what a face sees of an outline, if it does.
-fn spot(outline: &Outline, object: u32) -> Option<Spot> {
-    let [[u_low, u_high], [v_low, v_high]] = outline.slopes;
-    let is_seen = u_low.max(v_low) <= LIMIT && u_high.min(v_high) >= -LIMIT;
-    let down = |number: f64| {
-        let rounded = number as f32;
-        if f64::from(rounded) > number { rounded.next_down() } else { rounded }
-    };
-    is_seen.then(|| Spot {
-        low: [down(u_low), down(v_low)],
-        high: [-down(-u_high), -down(-v_high)],
-        near: down(outline.near),
-        object,
-    })
-}
-
-/// What some objects are to the faces.
-#[derive(Debug)]
-struct Seen {
-    spots: [Vec<Spot>; 6],
-    /// The least and the largest slopes of the spots of each face.
-    ranges: [[[f64; 2]; 2]; 6],
-}
-
-impl Seen {
-    fn new(scene: &Scene<'_>, apex: [f64; 3], objects: Range<usize>) -> Self {
-        let n_spheres = scene.spheres.radius.len();
-        let mut spots = [const { Vec::new() }; 6];
-        for i in objects {
-            match i.checked_sub(n_spheres) {
-                None => add_sphere(scene, apex, i, &mut spots),
-                Some(cylinder_idx) => add_cylinder(scene, apex, cylinder_idx, i as u32, &mut spots),
-            }
-        }
-        let widen = |[low, high]: [f64; 2], spot: &Spot, k: usize| {
-            [low.min(spot.low[k].into()).max(-LIMIT), high.max(spot.high[k].into()).min(LIMIT)]
-        };
-        let range = |spots: &Vec<Spot>| {
-            spots.iter().fold([NOTHING; 2], |ranges, spot| [widen(ranges[0], spot, 0), widen(ranges[1], spot, 1)])
-        };
-        Self { ranges: spots.each_ref().map(range), spots }
-    }
-}
-
 /// A range that holds nothing.
 const NOTHING: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
 
@@ -349,32 +298,56 @@ impl Face {
 
     /// Returns the strips that a query looks into.
     fn strips_of(&self, query: &Query) -> RangeInclusive<usize> {
-        let [first, last] = [query.low[1], query.high[1]].map(|slope| cell(self.strips.place(slope)));
-        first..=last
+        self.strips_between(query.low[1], query.high[1])
     }
 
-    /// Cuts a face into strips for what is seen through it.
-    fn new(chunks: &[Seen], face: usize) -> Self {
-        let n_spots: usize = chunks.iter().map(|chunk| chunk.spots[face].len()).sum();
+    /// Returns the strips between two slopes.
+    #[inline]
+    fn strips_between(&self, low: f64, high: f64) -> RangeInclusive<usize> {
+        cell(self.strips.place(low))..=cell(self.strips.place(high))
+    }
+
+    /// Cuts a face into strips, given what is seen of each `step`-th object.
+    ///
+    /// What the others reach beyond is counted to the ends; that must be little, so few samples choose nothing.
+    fn new(samples: &[Spot], step: usize) -> Self {
         let range = |k: usize| {
-            let ranges = chunks.iter().map(|chunk| chunk.ranges[face][k]);
-            ranges.fold(NOTHING, |all, range| [all[0].min(range[0]), all[1].max(range[1])])
+            samples.iter().fold(NOTHING, |[low, high], spot| {
+                [low.min(f64::from(spot.low[k]).max(-LIMIT)), high.max(f64::from(spot.high[k]).min(LIMIT))]
+            })
         };
-        let (n_strips, [width, height]) = match n_spots {
-            0 => (1, [[0.0; 2]; 2]),
-            1..STRIPS_FROM => (1, [range(0), range(1)]),
-            _ => (2 * rayon::current_num_threads() as u32, [range(0), range(1)]),
+        let [width, height] = match samples.len() {
+            0 if step == 1 => [[0.0; 2]; 2],
+            ..MIN_SAMPLES if step > 1 => [[-LIMIT, LIMIT]; 2],
+            _ => [range(0), range(1)],
+        };
+        let n_strips = match samples.len() * step {
+            ..STRIPS_FROM => 1,
+            _ => STRIPS_PER_THREAD * rayon::current_num_threads() as u32,
         };
         Self { strips: Axis::new(height, n_strips), width, grids: Vec::new() }
     }
+}
 
-    /// Sorts what is seen through a strip.
-    fn sort(&self, chunks: &[Seen], face: usize, strip: usize) -> Grid {
-        let place = |slope: f32| cell(self.strips.place(slope.into()));
-        let is_in = |spot: &&Spot| place(spot.low[1]) <= strip && strip <= place(spot.high[1]);
-        let spots: Vec<_> = chunks.iter().flat_map(|chunk| chunk.spots[face].iter().filter(is_in)).copied().collect();
-        Grid::new(&spots, [self.width, self.strips.range(strip)])
+/// Cuts the faces into strips by what is seen of some objects.
+fn choose_strips(scene: &Scene<'_>, apex: [f64; 3], n_objects: usize) -> [Face; CubeFace::N] {
+    let step = n_objects / N_SAMPLES + 1;
+    let mut samples = [const { Vec::new() }; CubeFace::N];
+    let mut add = |face: usize, spot| samples[face].push(spot);
+    match step {
+        1 => for_each_spot(scene, apex, 0..n_objects, add),
+        _ => (0..n_objects).step_by(step).for_each(|i| for_each_spot(scene, apex, i..i + 1, &mut add)),
     }
+    samples.map(|samples| Face::new(&samples, step))
+}
+
+/// Appends to a list that is either long or empty.
+#[inline]
+fn push(list: &mut Vec<Spot>, spot: Spot) {
+    if list.capacity() == 0 {
+        list.reserve(OBJECTS_PER_TASK);
+    }
+    list.push(spot);
 }
 
 #[cfg(test)]

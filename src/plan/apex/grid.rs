@@ -40,6 +40,9 @@ const MAX_DEPTH: u32 = 6;
 /// Columns and rows of a grid: their places fit 32 bits.
 const MAX_SIDE: f64 = 8192.0;
 
+/// Numbers of binary64 from here on, 2⁵², to twice as much are whole.
+const WHOLE: f64 = (1u64 << 52) as f64;
+
 /// A bound of what an apex sees of an object through one face.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spot {
@@ -95,7 +98,9 @@ impl Axis {
     /// Returns the place of a slope; what is outside of the range is at its end.
     #[inline]
     pub fn place(&self, slope: f64) -> u32 {
-        ((slope - self.low) * self.places_per_slope).clamp(0.0, self.last) as u32
+        // What is no number is at the first. The sum is rounded to a whole number, in its lowest bits.
+        let place = ((slope - self.low) * self.places_per_slope).max(0.0).min(self.last);
+        (place + WHOLE).to_bits() as u32
     }
 
     /// Returns the number of cells.
@@ -199,13 +204,13 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    /// Sorts outlines into a grid over their window.
-    pub fn new(spots: &[Spot], window: [[f64; 2]; 2]) -> Self {
+    /// Sorts outlines, some parts of them, into a grid over their window.
+    pub fn new(parts: &[&[Spot]], window: [[f64; 2]; 2]) -> Self {
         let mut grid = Self::default();
-        if spots.is_empty() {
+        if parts.iter().all(|part| part.is_empty()) {
             return grid;
         }
-        grid.add_node(spots, window, 0);
+        grid.add_node(parts, window, 0);
         grid
     }
 
@@ -312,54 +317,53 @@ impl Grid {
     }
 
     /// Adds the grid of a window and returns its place.
-    fn add_node(&mut self, spots: &[Spot], window: [[f64; 2]; 2], depth: u32) -> usize {
-        let axes = cut_window(spots, window);
+    fn add_node(&mut self, parts: &[&[Spot]], window: [[f64; 2]; 2], depth: u32) -> usize {
+        let axes = cut_window(parts, window);
         let n_cells = axes.map(|axis| axis.cells());
         let large_shift = n_cells[0].max(n_cells[1]).next_power_of_two().trailing_zeros();
         let (node_idx, first_cell) = (self.nodes.len(), self.cells.len());
         self.cells.resize(first_cell + n_cells[0] * n_cells[1], Cell::default());
-        let large = self.make_room(spots, &axes, first_cell, depth);
-        self.nodes.push(Node { axes, first_cell, large, large_shift });
-
+        let mut large = self.make_room(parts, &axes, first_cell, depth);
         let mut crowds: Vec<Vec<Spot>> = Vec::new();
-        self.nodes[node_idx].large.len = 0;
-        for spot in spots {
-            let [low, high] = places(spot, &axes);
-            let Some(cells) = blocks(low, high) else {
-                let [low, high] = [low, high].map(|places| places.map(|place| place >> large_shift));
-                let list = &mut self.nodes[node_idx].large;
-                let at = list.push();
-                self.put(at, record::new(low, high, spot.near), spot.object);
+        large.len = 0;
+        for spot in parts.iter().copied().flatten() {
+            let places = places(spot, &axes);
+            let block = Block::between(places);
+            if block.is_large() {
+                let [low, high] = places.map(|places| places.map(|place| place >> large_shift));
+                self.put(large.push(), record::new(low, high, spot.near), spot.object);
                 continue;
-            };
-            for at in cells {
+            }
+            block.for_each(|at| {
                 let found = &mut self.cells[first_cell + at[1] * n_cells[0] + at[0]];
                 if found.len == Cell::GRID {
                     let crowd_idx = found.start as usize;
                     crowds.resize_with(crowds.len().max(crowd_idx + 1), Vec::new);
                     crowds[crowd_idx].push(*spot);
                 } else {
-                    let (from, to) = shares(at, low, high);
+                    let (from, to) = shares(at, places[0], places[1]);
                     let at = found.push();
                     self.put(at, record::new(from, to, spot.near), spot.object);
                 }
-            }
+            });
         }
+        self.nodes.push(Node { axes, first_cell, large, large_shift });
         self.add_crowds(node_idx, &crowds, depth);
         node_idx
     }
 
     /// Makes room for the records of a node, by counting, and numbers the cells that are to be grids; returns where those
     /// lie that are kept apart.
-    fn make_room(&mut self, spots: &[Spot], axes: &[Axis; 2], first_cell: usize, depth: u32) -> Cell {
+    fn make_room(&mut self, parts: &[&[Spot]], axes: &[Axis; 2], first_cell: usize, depth: u32) -> Cell {
         let n_columns = axes[0].cells();
         let cells = &mut self.cells[first_cell..];
         let mut large = Cell { start: self.records.len() as u32, len: 0 };
-        for spot in spots {
-            let [low, high] = places(spot, axes);
-            match blocks(low, high) {
-                None => large.len += 1,
-                Some(blocks) => blocks.for_each(|[column, row]| cells[row * n_columns + column].len += 1),
+        for spot in parts.iter().copied().flatten() {
+            let block = Block::between(places(spot, axes));
+            if block.is_large() {
+                large.len += 1;
+            } else {
+                block.for_each(|[column, row]| cells[row * n_columns + column].len += 1);
             }
         }
         let may_nest = depth < MAX_DEPTH && cells.len() > 1;
@@ -374,8 +378,13 @@ impl Grid {
                 n_records += mem::take(&mut cell.len) as usize;
             }
         }
-        self.records.resize(n_records, 0);
-        self.objects.resize(n_records, 0);
+        if self.records.is_empty() {
+            // Room that is known to be zero is not touched before it is written to.
+            (self.records, self.objects) = (vec![0; n_records], vec![0; n_records]);
+        } else {
+            self.records.resize(n_records, 0);
+            self.objects.resize(n_records, 0);
+        }
         large
     }
 
@@ -396,7 +405,7 @@ impl Grid {
                 let at = [i % n_columns, i / n_columns];
                 let window = std::array::from_fn(|k| axes[k].range(at[k]));
                 let crowd = &crowds[self.cells[first_cell + i].start as usize];
-                self.cells[first_cell + i].start = self.add_node(crowd, window, depth + 1) as u32;
+                self.cells[first_cell + i].start = self.add_node(&[crowd], window, depth + 1) as u32;
             }
         }
     }
@@ -404,8 +413,12 @@ impl Grid {
 
 /// Returns the first and the last place of an outline.
 #[inline]
-fn places(spot: &Spot, axes: &[Axis; 2]) -> [[u32; 2]; 2] {
-    [spot.low, spot.high].map(|slopes| std::array::from_fn(|k| axes[k].place(f64::from(slopes[k]))))
+fn places(spot: &Spot, [columns, rows]: &[Axis; 2]) -> [[u32; 2]; 2] {
+    let [low, high] = [spot.low, spot.high];
+    [
+        [columns.place(low[0].into()), rows.place(low[1].into())],
+        [columns.place(high[0].into()), rows.place(high[1].into())],
+    ]
 }
 
 /// Returns the shares of a cell that lie between two places.
@@ -415,29 +428,59 @@ fn shares(at: [usize; 2], low: [u32; 2], high: [u32; 2]) -> ([u32; 2], [u32; 2])
     (std::array::from_fn(|k| share(k, low[k], 0)), std::array::from_fn(|k| share(k, high[k], LAST_SHARE)))
 }
 
-/// Returns the cells between two places; `None` when they are many.
-#[inline]
-fn blocks(low: [u32; 2], high: [u32; 2]) -> Option<impl Iterator<Item = [usize; 2]> + use<>> {
-    let [low, high] = [low, high].map(|places| places.map(cell));
-    let n = (high[0] - low[0] + 1) * (high[1] - low[1] + 1);
-    (n <= MAX_CELLS)
-        .then(|| (low[1]..=high[1]).flat_map(move |row| (low[0]..=high[0]).map(move |column| [column, row])))
+/// The cells of an outline: the first column and row, and the last.
+#[derive(Clone, Copy)]
+struct Block {
+    first: [usize; 2],
+    last: [usize; 2],
+}
+
+impl Block {
+    /// Returns the cells between two places.
+    #[inline]
+    fn between([low, high]: [[u32; 2]; 2]) -> Self {
+        Self { first: low.map(cell), last: high.map(cell) }
+    }
+
+    fn n_cells(self) -> usize {
+        (self.last[0] - self.first[0] + 1) * (self.last[1] - self.first[1] + 1)
+    }
+
+    /// Tells whether what covers these cells is kept apart.
+    fn is_large(self) -> bool {
+        self.n_cells() > MAX_CELLS
+    }
+
+    /// Calls `visit` with each cell.
+    #[inline]
+    fn for_each(self, mut visit: impl FnMut([usize; 2])) {
+        // Most outlines lie in one cell.
+        if self.first == self.last {
+            return visit(self.first);
+        }
+        for row in self.first[1]..self.last[1] + 1 {
+            for column in self.first[0]..self.last[0] + 1 {
+                visit([column, row]);
+            }
+        }
+    }
 }
 
 /// Chooses the cells of a window so that a cell has about as many records as it should, and the outlines, of which some
 /// are looked at, do not become too many records.
-fn cut_window(spots: &[Spot], window: [[f64; 2]; 2]) -> [Axis; 2] {
+fn cut_window(parts: &[&[Spot]], window: [[f64; 2]; 2]) -> [Axis; 2] {
     debug_assert!(window.as_flattened().iter().all(|end| end.is_finite()));
     let [width, height] = window.map(|[low, high]| high - low);
-    let n_cells = (spots.len() / PER_CELL).max(1) as f64;
+    let n_spots: usize = parts.iter().map(|part| part.len()).sum();
+    let n_cells = (n_spots / PER_CELL).max(1) as f64;
     let mut side = libm::sqrt(width * height / n_cells).max(width.max(height) / n_cells.min(MAX_SIDE));
-    let samples = || spots.iter().step_by(spots.len() / N_SAMPLES + 1);
+    let samples: Vec<_> = parts.iter().copied().flatten().step_by(n_spots / N_SAMPLES + 1).collect();
     loop {
         let n = |extent: f64| if side > 0.0 { (extent / side).ceil().clamp(1.0, MAX_SIDE) as u32 } else { 1 };
         let counts = [n(width), n(height)];
         let axes = [Axis::new(window[0], counts[0]), Axis::new(window[1], counts[1])];
-        let n_records: usize = samples().map(|spot| covered(places(spot, &axes))).sum();
-        if counts == [1, 1] || n_records as f64 <= MAX_GROWTH * samples().len() as f64 {
+        let n_records: usize = samples.iter().map(|spot| covered(places(spot, &axes))).sum();
+        if counts == [1, 1] || n_records as f64 <= MAX_GROWTH * samples.len() as f64 {
             return axes;
         }
         side *= 1.5;
@@ -445,8 +488,9 @@ fn cut_window(spots: &[Spot], window: [[f64; 2]; 2]) -> [Axis; 2] {
 }
 
 /// Returns how many cells an outline is listed in; one that is kept apart is listed once.
-fn covered([low, high]: [[u32; 2]; 2]) -> usize {
-    blocks(low, high).map_or(1, Iterator::count)
+fn covered(places: [[u32; 2]; 2]) -> usize {
+    let block = Block::between(places);
+    if block.is_large() { 1 } else { block.n_cells() }
 }
 
 #[cfg(test)]
@@ -472,7 +516,7 @@ mod tests {
         for n in [1, 7, 500, 6000] {
             let mut stream = Stream::new(n as u64);
             let spots = random_spots(&mut stream, n);
-            let grid = Grid::new(&spots, [[-0.2, 0.8]; 2]);
+            let grid = Grid::new(&[&spots], [[-0.2, 0.8]; 2]);
             let n_listed = grid.records.len();
             assert!(n_listed < 10 * n, "{n_listed} records of {n}");
             for _ in 0..2000 {
@@ -501,7 +545,7 @@ mod tests {
     #[test]
     fn a_query_stops_when_it_is_told() {
         let spot = |object| Spot { low: [0.0; 2], high: [1.0; 2], near: 1.0, object };
-        let grid = Grid::new(&[0, 1, 2].map(spot), [[0.0, 1.0]; 2]);
+        let grid = Grid::new(&[&[0, 1, 2].map(spot)], [[0.0, 1.0]; 2]);
         let query = Query { low: [0.5; 2], high: [0.5; 2], far: 2.0 };
         let mut n_visits = 0;
         let mut stop = |_| {

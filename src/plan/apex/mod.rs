@@ -9,11 +9,12 @@ mod bins;
 mod cube;
 mod grid;
 mod outline;
+mod seen;
 
 pub(super) use bins::{Bins, Cells};
 pub(super) use cube::Cube;
 pub use cube::{CubeFace, Expect, Look, Slopes};
-pub(super) use outline::Outline;
+pub(super) use outline::{BLOCK, Outline, Outlines};
 
 /// Half an ulp of 1.
 const ROUNDOFF: f64 = f64::EPSILON / 2.0;
