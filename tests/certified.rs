@@ -12,7 +12,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
-use clisc::exact::{Pixel, Record, Renderer};
+use clisc::exact::{Pixel, Record, Renderer, Tie, TiePlace};
 use clisc::exec::{CancellationToken, Event, MemorySink, Observer, Options, WriteReport, exact_settings, execute};
 use clisc::image::{RgbImage, decode_png};
 use clisc::ir::{SceneView, Valid};
@@ -57,12 +57,16 @@ fn assert_is_certified(title: &str, text: &str, settings: &Settings) {
     let n_pixels = proof.n_binary64 + proof.n_double_double + proof.exact.n_pixels() + proof.n_shared;
     assert_eq!(n_pixels, exact.len() as u64, "{title}");
     assert!(proof.largest_bound < 0.5, "{title}: a bound of {} levels", proof.largest_bound);
-    // Every tie of the image is a tie to `exact` too; the tracer may prove a pixel that `exact` leaves open.
+    // Every tie of the image is a tie to `exact` too; the tracer may prove a pixel that `exact` leaves open, and touch a wall
+    // beyond its caps, where `exact` need not look.
+    let testing_all = Renderer::new(last_view(&program), &exact_settings(settings)).testing_all();
     let width = settings.size.width();
     for place in &proof.exact.ties {
         let pixel = &exact[(place.row * width + place.column) as usize];
-
         assert_eq!(pixel.open_ties, place.open, "{title} at ({}, {})", place.column, place.row);
+        let all = testing_all.pixel(place.column, place.row);
+        let is_tie = |tie: Tie| place.proved.of(tie) <= all.proved_ties.of(tie) + all.algebraic_ties.of(tie);
+        assert!([Tie::Tangent, Tie::Rim].into_iter().all(is_tie), "{title}: {place:?}, and to exact {all:?}");
     }
 }
 
@@ -111,6 +115,22 @@ fn ties_are_listed_in_the_proof() {
     assert_eq!((image.pixel(138, 84), image.pixel(138, 83)), ([14, 54, 3], [0; 3]));
     assert_eq!(report.counts.ties, proof.exact.n_ties);
     assert!(proof.is_complete(), "all are proved to touch");
+}
+
+#[test]
+fn eye_rays_that_touch_take_no_exact_work() {
+    let ground = "fov 60\nlight 1 1 1 0 2 0\nsurface .1 .1 .1 .5 .5 .5 0 0 0 1 0\ncylinder 10 0 0 -2 -1\n";
+    for (text, tie, n_places) in [(TOUCHED, Tie::Tangent, 16), (ground, Tie::Rim, 3)] {
+        let (program, settings) = (compile(&format!("{text}write i.png\n")), sized(300, 300));
+        let (report, _) = run(&program, &settings).pop().expect("an image");
+        let record = report.proof.expect("everything is proved").exact;
+        assert_eq!((record.n_pixels(), record.ties.len()), (0, n_places), "{text}{record:?}");
+        let exact = Renderer::new(last_view(&program), &exact_settings(&settings));
+        for place in &record.ties {
+            assert_eq!(TiePlace::of(place.column, place.row, &exact.pixel(place.column, place.row)), Some(*place));
+            assert_eq!(place.proved.of(tie), place.n_ties(), "{place:?}");
+        }
+    }
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! What was found while pixels were made exactly.
+//! What was found while pixels were made exactly, or nearly so with ties that are proved.
 
 use std::collections::BTreeMap;
 
@@ -66,7 +66,13 @@ impl Record {
         } else {
             self.n_open_pixels += 1;
         }
-        let Some(place) = TiePlace::of(column, row, pixel) else { return };
+        if let Some(place) = TiePlace::of(column, row, pixel) {
+            self.add_ties(place);
+        }
+    }
+
+    /// Adds the ties of a pixel.
+    pub fn add_ties(&mut self, place: TiePlace) {
         self.n_tied_pixels += 1;
         self.n_ties += u64::from(place.n_ties());
         self.ties.push(place);

@@ -63,6 +63,14 @@ impl Tie {
 pub struct Ties([u32; Tie::ALL.len()]);
 
 impl Ties {
+    /// Makes so many of some kinds.
+    #[must_use]
+    pub fn new(numbers: &[(Tie, u32)]) -> Self {
+        let mut ties = Self::default();
+        numbers.iter().for_each(|(tie, n)| ties.0[*tie as usize] += n);
+        ties
+    }
+
     /// Returns the number of ties of one kind.
     #[must_use]
     pub fn of(&self, tie: Tie) -> u32 {

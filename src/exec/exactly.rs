@@ -3,11 +3,11 @@
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
-use crate::exact::{self, Record, Renderer, TiePlace};
+use crate::exact::{self, Record, Renderer, Tie, TiePlace, Ties};
 use crate::exec::limit::Limit;
 use crate::ir::SceneView;
 use crate::plan::{Part, Precision, SampleAt, Settings, is_within_range, plan};
-use crate::trace::{Counts, Referee, Tracer};
+use crate::trace::{Counts, Referee, Touches, Tracer};
 
 /// Says in the words of `exact` what a render is asked for; of the plan's settings its precision and passes mean nothing
 /// there.
@@ -115,5 +115,10 @@ impl Referee for Exactly<'_> {
         self.limit.spend(pixel.work);
         self.note(|record| record.add(column, row, &pixel));
         (pixel.rgb, TiePlace::of(column, row, &pixel).map_or(0, |place| place.n_ties()))
+    }
+
+    fn hear(&self, column: u32, row: u32, touches: Touches) {
+        let proved = Ties::new(&[(Tie::Tangent, touches.n_tangents), (Tie::Rim, touches.n_rims)]);
+        self.note(|record| record.add_ties(TiePlace { row, column, open: Ties::default(), proved }));
     }
 }

@@ -12,9 +12,13 @@ use crate::math::{DoubleDouble, Real};
 /// The least magnitude of a length whose square [`Expansion::add_square`] takes without a loss to underflow: 2⁻⁴⁰⁰.
 const MIN_LENGTH: f64 = f64::from_bits((1023 - 400) << 52);
 
+/// The least magnitude of a product of two numbers that [`Expansion::add_product`] takes without a loss to underflow: 2⁻⁹⁰⁰.
+const MIN_PRODUCT: f64 = f64::from_bits((1023 - 900) << 52);
+
 /// A number that is the exact sum of its terms.
 ///
-/// Exact as long as nothing overflows; products must not underflow, see [`Expansion::add_product`].
+/// Exact as long as nothing overflows; products must not underflow, see [`Expansion::add_product`]. After an overflow it is
+/// not 0.
 #[derive(Clone, Debug, Default)]
 pub struct Expansion {
     /// Do not overlap; magnitudes rise, and none is 0.
@@ -43,6 +47,17 @@ impl Expansion {
         if carried != 0.0 {
             self.terms.push(carried);
         }
+    }
+
+    /// Makes the sum of some products; `None` when one of them is so small that it may underflow.
+    #[must_use]
+    pub fn of_products<const N: usize>(products: [[f64; 2]; N]) -> Option<Self> {
+        let mut sum = Self::new();
+        for [a, b] in products {
+            let is_sound = a == 0.0 || b == 0.0 || (a * b).abs() >= MIN_PRODUCT;
+            is_sound.then(|| sum.add_product(a, b))?;
+        }
+        Some(sum)
     }
 
     /// Adds a·b, whose magnitude is 0 or at least 2⁻⁹⁰⁰.
@@ -78,6 +93,39 @@ impl Expansion {
             is_exact &= power.add_square(coordinate, -center, 1.0);
         }
         is_exact.then_some(power)
+    }
+
+    /// Returns the sum of two numbers.
+    #[must_use]
+    pub fn plus(mut self, other: &Self) -> Self {
+        other.terms.iter().for_each(|term| self.add(*term));
+        self
+    }
+
+    /// Returns the product of two numbers; `None` when that of two terms is so small that it may underflow.
+    #[must_use]
+    pub fn times(&self, other: &Self) -> Option<Self> {
+        let mut product = Self::new();
+        for term in &other.terms {
+            product = product.plus(&self.scaled(*term)?);
+        }
+        Some(product)
+    }
+
+    /// Returns the product with a binary64 number; `None` when that of a term is so small that it may underflow.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Option<Self> {
+        let mut product = Self::new();
+        for term in &self.terms {
+            product = product.plus(&Self::of_products([[*term, factor]])?);
+        }
+        Some(product)
+    }
+
+    /// Tells whether the number is 0.
+    #[must_use]
+    pub fn is_zero(&self) -> bool {
+        self.terms.is_empty()
     }
 
     /// Returns the number with a bound on what is lost to rounding; 0 is exact.

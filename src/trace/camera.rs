@@ -2,12 +2,15 @@
 
 use crate::math::{Real, Vector, tan_half_degrees};
 use crate::trace::ray::Ray;
+use crate::trace::touch::{Aim, HalfTangent};
 
 /// The eye at the origin, looking along −z.
 #[derive(Clone, Copy, Debug)]
 pub struct Camera<R> {
     /// The share of the view's half height that one step of a sample's place makes, at z = −1.
     step: R,
+    steps_per_half_height: u32,
+    half_tangent: HalfTangent,
 }
 
 impl<R: Real> Camera<R> {
@@ -15,7 +18,11 @@ impl<R: Real> Camera<R> {
     /// `steps_per_half_height` steps.
     pub fn new(fov_deg: f64, steps_per_half_height: u32) -> Self {
         let (k, relative_error) = tan_half_degrees(fov_deg);
-        Self { step: R::rounded(k, relative_error) / R::exact(f64::from(steps_per_half_height)) }
+        Self {
+            step: R::rounded(k, relative_error) / R::exact(f64::from(steps_per_half_height)),
+            steps_per_half_height,
+            half_tangent: HalfTangent::of_fov(fov_deg),
+        }
     }
 
     /// Returns the share of the view's half height that one step of a sample's place makes, at z = −1.
@@ -31,6 +38,7 @@ impl<R: Real> Camera<R> {
         Ray {
             origin: Vector::new(zero, zero, zero),
             dir: Vector::new(along(x), along(y), R::exact(-1.0)),
+            aim: Some(Aim::new(x, y, self.steps_per_half_height, self.half_tangent)),
             leaving: None,
             light: None,
         }

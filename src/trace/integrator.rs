@@ -118,6 +118,7 @@ fn reflect<R: Real>(ray: &Ray<R>, at: &HitPoint<'_, R>) -> Ray<R> {
     Ray {
         origin: at.point,
         dir: ray.dir - at.normal.scale(twice),
+        aim: None,
         leaving: Some(Leaving { equation: at.equation, inward: at.from_inside }),
         light: None,
     }

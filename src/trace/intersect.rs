@@ -9,6 +9,8 @@
 //! What no precision decides, because it is equal, is known where it follows from numbers of the scene:
 //! - The eye is one of them, so the sign of p is known for eye rays, also where it is 0.
 //! - So is a light, which a shadow ray meets at t = 1: see `occlude`.
+//! - An eye ray is made of its place in the image and one more number, so whether it touches a surface or meets a rim is
+//!   known too: see `touch`.
 //! - Of two surfaces with the same equation a ray meets the same roots, and of two caps in one plane the same point.
 //!
 //! # Source
@@ -25,6 +27,7 @@ use crate::trace::integrator::Integrator;
 use crate::trace::judge::{Doubt, Judge};
 use crate::trace::ray::{Face, Hit, Leaving, Ray};
 use crate::trace::reject;
+use crate::trace::touch::Touch;
 
 /// A meeting with a sphere or with the infinite wall of a cylinder.
 #[derive(Clone, Copy)]
@@ -168,7 +171,8 @@ fn intersect_sphere<R: Real>(
             radius: R::exact(spheres.radius[i]),
         }
     };
-    let [nearest, _] = roots(judge, leaving, false, quadric)?;
+    let touches = || ray.aim.is_some_and(|aim| aim.touches_sphere(center, spheres.radius[i]));
+    let [nearest, _] = roots(judge, leaving, false, quadric, touches)?;
     Ok(nearest.map(|root| Hit { t: root.t, face: Face::Sphere(sphere_idx), from_inside: root.from_inside }))
 }
 
@@ -225,11 +229,24 @@ fn intersect_wall<R: Real>(
     };
     let is_on = |light: DVec3| side_of([light.x, light.z], center, cylinders.radius[i]) == Some(Ordering::Equal);
     let ends_on = ray.light.is_some_and(is_on);
-    for root in roots(judge, leaving, ends_on, quadric)?.into_iter().flatten() {
-        let y = ray.origin.y + ray.dir.y * root.t;
-        let from_bottom = y - R::exact(cylinders.y_min[i]);
-        let to_top = R::exact(cylinders.y_max[i]) - y;
-        if reaches(judge, from_bottom, ray.dir.y, &root)? && reaches(judge, to_top, -ray.dir.y, &root)? {
+    let touches = || ray.aim.is_some_and(|aim| aim.touches_wall(center, cylinders.radius[i]));
+    let roots = roots(judge, leaving, ends_on, quadric, touches)?;
+    let level = |root: &Root<R>| ray.origin.y + ray.dir.y * root.t;
+    for root in roots.iter().flatten() {
+        // The ray is level with a rim once: at this root, unless it may be at the other.
+        let is_level_elsewhere = |height: f64| {
+            let others = roots.iter().flatten().filter(|other| other.from_inside != root.from_inside);
+            let mut signs = others.map(|other| (level(other) - R::exact(height)).sign());
+            signs.any(|sign| matches!(sign, Sign::Zero | Sign::Unknown))
+        };
+        let is_rim = |height: f64| {
+            let meets_rim = ray.aim.is_some_and(|aim| aim.meets_rim(center, cylinders.radius[i], height));
+            meets_rim && !is_level_elsewhere(height)
+        };
+        let (y, bottom, top) = (level(root), cylinders.y_min[i], cylinders.y_max[i]);
+        if reaches(judge, y - R::exact(bottom), ray.dir.y, root, || is_rim(bottom))?
+            && reaches(judge, R::exact(top) - y, -ray.dir.y, root, || is_rim(top))?
+        {
             return Ok(Some(Hit { t: root.t, face: Face::Wall(cylinder_idx), from_inside: root.from_inside }));
         }
     }
@@ -238,14 +255,21 @@ fn intersect_wall<R: Real>(
 
 /// Tells whether a meeting with the infinite wall lies on a cylinder's side of one of its caps, or on the rim.
 ///
-/// `height`: of the meeting, from the cap into the cylinder. `climb`: of the ray's direction, the same way.
+/// `height`: of the meeting, from the cap into the cylinder. `climb`: of the ray's direction, the same way. `is_rim`: whether
+/// the height is known to be 0, asked where it may be.
 ///
 /// A rim counts, but for one case: where the ray leaves the infinite wall just as it comes down to the cap, it touches
 /// nothing but that one point. The semantics call rims hits, yet count two pixels in which the original image of scene
 /// i6 may differ, and pixel (0, 180) would be the third: there the ray touches the far rim of the ground so, exactly, and
 /// the image shows the background. We follow the image.
-fn reaches<R: Real>(judge: &mut Judge, height: R, climb: R, root: &Root<R>) -> Result<bool, Doubt> {
-    Ok(match judge.compare_zero(height)? {
+fn reaches<R: Real>(
+    judge: &mut Judge,
+    height: R,
+    climb: R,
+    root: &Root<R>,
+    is_rim: impl FnOnce() -> bool,
+) -> Result<bool, Doubt> {
+    Ok(match judge.compare_zero_asking(height, Touch::Rim, is_rim)? {
         Ordering::Less => false,
         Ordering::Greater => true,
         Ordering::Equal => !(root.from_inside && judge.is_positive(climb)?),
@@ -277,10 +301,12 @@ fn intersect_cap<R: Real>(
     }
     let t = rise / ray.dir.y;
     let point = [ray.origin.x + ray.dir.x * t, ray.origin.z + ray.dir.z * t];
-    let power = R::power_of_point(point, [cylinders.x[i], cylinders.z[i]], cylinders.radius[i]);
+    let (center, radius) = ([cylinders.x[i], cylinders.z[i]], cylinders.radius[i]);
+    let power = R::power_of_point(point, center, radius);
+    let is_rim = || ray.aim.is_some_and(|aim| aim.meets_rim(center, radius, height));
     let from_inside = vertical.is_gt() == is_upper;
     // Of the rim, what a ray from outside meets belongs to the wall: see `reaches`.
-    let is_met = match judge.compare_zero(power)? {
+    let is_met = match judge.compare_zero_asking(power, Touch::Rim, is_rim)? {
         Ordering::Less => true,
         Ordering::Equal => from_inside,
         Ordering::Greater => false,
@@ -295,11 +321,14 @@ fn intersect_cap<R: Real>(
 ///
 /// For the surface that holds the light at the end of the ray, 1 is a root, and the other is p/a. From outside that is ahead;
 /// it is the near one if it is before the light, and else of no matter.
+///
+/// `touches`: whether the discriminant is known to be 0, asked where it may be.
 fn roots<R: Real>(
     judge: &mut Judge,
     leaving: Option<Leaving>,
     ends_on: bool,
     quadric: impl FnOnce() -> Quadric<R>,
+    touches: impl FnOnce() -> bool,
 ) -> Result<Roots<R>, Doubt> {
     if leaving.is_some_and(|leaving| !leaving.inward) {
         return Ok([None, None]);
@@ -327,7 +356,7 @@ fn roots<R: Real>(
                 return Ok([None, None]);
             }
             let discriminant = dir_squared * radius.square() - cross_squared;
-            let touches = match judge.compare_zero(discriminant)? {
+            let touches = match judge.compare_zero_asking(discriminant, Touch::Tangent, touches)? {
                 Ordering::Less => return Ok([None, None]),
                 Ordering::Equal => true,
                 Ordering::Greater => false,

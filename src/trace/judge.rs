@@ -4,6 +4,7 @@ use std::cmp::Ordering;
 
 use crate::math::{Real, Sign};
 use crate::trace::Counts;
+use crate::trace::touch::{Touch, Touches};
 
 /// A comparison that lies within the error bounds: a finer arithmetic has to be asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,6 +15,8 @@ pub struct Doubt;
 pub struct Judge {
     /// What has been done so far.
     pub counts: Counts,
+    /// What was proved equal for the pixel at hand where bounds left it open.
+    pub touches: Touches,
     /// Whether what cannot be decided is a tie, because there is no finer arithmetic to ask.
     pub takes_ties: bool,
 }
@@ -39,6 +42,25 @@ impl Judge {
             }
             Sign::Unknown => Err(Doubt),
         }
+    }
+
+    /// Compares a number with 0 as [`Judge::compare_zero`] does, but where the bounds leave it open asks `is_zero` whether it is
+    /// known to be 0: that is no tie that is taken, but one that is proved.
+    ///
+    /// # Errors
+    /// As [`Judge::compare_zero`].
+    #[inline]
+    pub fn compare_zero_asking<R: Real>(
+        &mut self,
+        number: R,
+        touch: Touch,
+        is_zero: impl FnOnce() -> bool,
+    ) -> Result<Ordering, Doubt> {
+        if number.sign() == Sign::Unknown && is_zero() {
+            self.touches.count(touch);
+            return Ok(Ordering::Equal);
+        }
+        self.compare_zero(number)
     }
 
     /// Tells whether a number is above 0; a tie is not.

@@ -26,12 +26,14 @@ mod ray;
 mod referee;
 mod reject;
 mod shade;
+mod touch;
 mod unrounded;
 mod wide;
 
 pub use canvas::Canvas;
 pub use counts::Counts;
 pub use referee::Referee;
+pub use touch::Touches;
 pub use unrounded::Unrounded;
 #[cfg(feature = "testing")]
 pub use wide::{fault::Fault, notes::Proved};
@@ -301,9 +303,11 @@ impl<'a, 'p> Settler<'a, 'p> {
         let pixel = tracer.sampling.pixel(column, row);
         let among = tracer.plan.tiles.candidates(column, row);
         if let Ok(bytes) = pixel::settle(&mut self.coarse, &tracer.camera, &pixel, among) {
+            self.tell_touches(column, row, self.coarse.judge.touches);
             return bytes;
         }
         if let Ok(bytes) = pixel::settle(&mut self.fine, &tracer.fine_camera, &pixel, among) {
+            self.tell_touches(column, row, self.fine.judge.touches);
             self.fine.judge.counts.refined_pixels += 1;
             return bytes;
         }
@@ -312,6 +316,17 @@ impl<'a, 'p> Settler<'a, 'p> {
         self.fine.judge.counts.exact_pixels += 1;
         self.fine.judge.counts.ties += u64::from(n_ties);
         bytes
+    }
+
+    /// Counts the ties that were proved on the way to a pixel, and tells the referee.
+    fn tell_touches(&mut self, column: u32, row: u32, touches: Touches) {
+        if touches == Touches::default() {
+            return;
+        }
+        self.fine.judge.counts.ties += u64::from(touches.total());
+        if let Some(referee) = self.tracer.referee {
+            referee.hear(column, row, touches);
+        }
     }
 
     /// Settles all pixels of these rows.

@@ -172,7 +172,7 @@ mod tests {
             };
             let scene = Scene::of_shapes(spheres, CylinderLanes::default());
             let origin = Vector::<R>::exact(point);
-            let ray = Ray { origin, dir: Vector::exact(light) - origin, leaving: None, light: Some(light) };
+            let ray = Ray { origin, dir: Vector::exact(light) - origin, aim: None, leaving: None, light: Some(light) };
             sphere_occludes(&mut Judge::default(), &scene, &ray, light, 0)
         }
     }

@@ -7,6 +7,7 @@ use crate::plan::{Candidates, SampleAt, Settings};
 use crate::trace::camera::Camera;
 use crate::trace::integrator::Integrator;
 use crate::trace::judge::{Doubt, Judge};
+use crate::trace::touch::Touches;
 
 /// Added before rounding down, so that a decimal such as 0.6 = 153/255 gives 153. The semantics fix it at 2⁻²⁰.
 const QUANTISATION_BIAS: f64 = 1.0 / 1_048_576.0;
@@ -93,6 +94,7 @@ pub fn mean<R: Real>(
     pixel: &Pixel,
     among: Candidates<'_>,
 ) -> Result<Vector<R>, Doubt> {
+    integrator.judge.touches = Touches::default();
     let n = i64::from(pixel.samples);
     let mut sum = Vector::exact(glam::DVec3::ZERO);
     for row in 0..n {

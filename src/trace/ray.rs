@@ -6,6 +6,7 @@ use crate::ir::EquationId;
 use crate::math::{Real, Vector};
 use crate::plan::{Object, Scene};
 use crate::trace::reject::PlainRay;
+use crate::trace::touch::Aim;
 
 /// A half-line: the points origin + t·dir with t > 0.
 #[derive(Clone, Copy, Debug)]
@@ -14,6 +15,8 @@ pub struct Ray<R> {
     pub origin: Vector<R>,
     /// Need not be of unit length; `t` counts multiples of it.
     pub dir: Vector<R>,
+    /// The direction of an eye ray, up to a factor: exactly.
+    pub aim: Option<Aim>,
     /// The surface on which a secondary ray starts.
     pub leaving: Option<Leaving>,
     /// Where the light is to which a shadow ray leads, at t = 1: exactly.

@@ -109,7 +109,7 @@ impl<R: Real> Integrator<'_, '_, R> {
         self.judge.counts.shadow_rays += 1;
         let leaving = Leaving { equation: at.equation, inward: at.from_inside };
         let light = self.plan.scene.lights[light_idx].position;
-        let ray = Ray { origin: at.point, dir: to_light, leaving: Some(leaving), light: Some(light) };
+        let ray = Ray { origin: at.point, dir: to_light, aim: None, leaving: Some(leaving), light: Some(light) };
         let mut found = mem::take(&mut self.found);
         let listed = self.plan.occluders(at.object, light_idx);
         let among = look_up::before_light(self.plan, light_idx, &ray, &mut found, listed);
