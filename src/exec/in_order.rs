@@ -28,6 +28,7 @@ where
     E: Send,
 {
     let state = State {
+        n_waiting: 0,
         n_begun: 0,
         n_taken: 0,
         ready: BTreeMap::new(),
@@ -59,6 +60,8 @@ struct Line<M, T, K, E> {
 }
 
 struct State<T, K, E> {
+    /// Threads that wait for `changed`: without any nobody is woken, which is a call to the system each time.
+    n_waiting: u32,
     n_begun: u32,
     n_taken: u32,
     /// Items made that are not taken yet.
@@ -96,8 +99,12 @@ where
         let may_not_begin = |state: &mut State<T, K, E>| {
             !state.is_stopped && state.n_begun < self.n_items && state.n_begun - state.n_taken >= self.max_ahead
         };
-        let state = self.changed.wait_while(self.lock(), may_not_begin);
-        let mut state = state.unwrap_or_else(PoisonError::into_inner);
+        let mut state = self.lock();
+        if may_not_begin(&mut state) {
+            state.n_waiting += 1;
+            state = self.changed.wait_while(state, may_not_begin).unwrap_or_else(PoisonError::into_inner);
+            state.n_waiting -= 1;
+        }
         if state.is_stopped || state.n_begun == self.n_items {
             return None;
         }
@@ -124,7 +131,8 @@ where
             state.free.push(item);
             state.n_taken += 1;
             match taken {
-                Ok(()) => self.changed.notify_all(),
+                Ok(()) if state.n_waiting > 0 => self.changed.notify_all(),
+                Ok(()) => {}
                 Err(error) => return self.stop(state, Some(error)),
             }
         }
