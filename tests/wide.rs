@@ -164,3 +164,41 @@ fn packets_leave_few_pixels_open() {
     });
     assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
+
+/// Balls and columns on a ground, some of which touch, under lights that stand high, low, behind or inside of something.
+fn colonnade(stream: &mut Stream) -> String {
+    let mut any = |low: f64, high: f64| stream.between(low, high);
+    let mut text = format!("background 0.1 0.2 0.3\nfov {}\n", any(20.0, 100.0));
+    for _ in 0..3 {
+        let height = [-0.5, 0.5, 2.0, 9.0][any(0.0, 4.0) as usize];
+        text += &format!("light 0.6 0.5 0.4 {} {height} {}\n", any(-6.0, 6.0), any(-12.0, 2.0));
+    }
+    text += "surface 0.1 0.1 0.1 0.5 0.6 0.7 0.2 0.2 0.2 9 0\ncylinder 20 0 -5 -3 -1\n";
+    for _ in 0..14 {
+        let reflectance = if any(0.0, 1.0) < 0.3 { 0.5 } else { 0.0 };
+        text += &format!("surface 0.1 0 0.1 0.7 0.6 0.5 0.1 0.1 0.1 5 {reflectance}\n");
+        let (x, z, radius) = ((any(-8.0, 8.0)).round() / 2.0, (any(-20.0, -5.0)).round() / 2.0, any(0.1, 0.6));
+        match any(0.0, 3.0) as u32 {
+            0 => text += &format!("sphere {x} {} {z} {radius}\n", radius - 1.0),
+            1 => text += &format!("sphere {x} {} {z} 0.5\n", any(-1.0, 2.0)),
+            _ => text += &format!("cylinder {radius} {x} {z} -1 {}\n", any(-0.9, 3.0)),
+        }
+    }
+    text + "write colonnade.png\n"
+}
+
+/// Images large enough that tiles hold many packets of one face.
+#[test]
+fn packets_give_the_settled_pixels_of_colonnades() {
+    let mut stream = Stream::new(43);
+    let mut failures = Vec::new();
+    for _ in 0..12 {
+        let text = colonnade(&mut stream);
+        let found = differences("a colonnade", last_view(&compile(&text)), &sized(200, 120));
+        if !found.is_empty() {
+            failures.extend(found);
+            failures.push(text);
+        }
+    }
+    assert_none(&failures);
+}

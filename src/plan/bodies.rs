@@ -176,29 +176,6 @@ impl Body for FacingDisc {
     }
 }
 
-/// A box with its sides along the axes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Region {
-    /// The corner with the lowest coordinates.
-    pub min: DVec3,
-    /// The corner with the highest coordinates.
-    pub max: DVec3,
-}
-
-impl Body for Region {
-    fn lowest(&self, along: DVec3) -> DVec3 {
-        DVec3::select(along.cmpgt(DVec3::ZERO), self.min, self.max)
-    }
-
-    fn min_along(&self, along: DVec3) -> Ball64 {
-        dot(self.lowest(along), along)
-    }
-
-    fn y_range(&self) -> Option<[[f64; 2]; 2]> {
-        Some([[self.min.y, 0.0], [self.max.y, 0.0]])
-    }
-}
-
 /// Proves, if it can, that no point of `solid` lies on a segment from a point of `start` to `end`, the two ends left out.
 ///
 /// All of `start` must lie on one side of a plane of which `solid` does not lie on that side, and `end` beyond it; one of

@@ -193,7 +193,8 @@ fn list_shadows(f: &mut fmt::Formatter<'_>, plan: &Plan<'_>) -> fmt::Result {
     let lists = kept.iter().flat_map(|kept| &kept.lights);
     let n_pairs = kept.len() * plan.report.lights.len();
     let n_free = n_pairs - lists.clone().filter(|(_, between)| !between.is_empty()).count();
-    writeln!(f, "nothing between object and light in {n_free} of {}", counted(n_pairs, "pair"))?;
+    write!(f, "nothing between object and light in {n_free} of {}", counted(n_pairs, "pair"))?;
+    writeln!(f, "{}", if n_free < n_pairs { "; of the others less is, tile by tile, as tracing finds" } else { "" })?;
     for Kept { object, lights, .. } in kept {
         for (light, between) in lights {
             let light = plan.report.lights[*light as usize];

@@ -31,7 +31,6 @@ mod tree;
 mod writes;
 
 pub use apex::{CubeFace, Expect, Look, Slopes};
-pub use bodies::Region;
 pub use candidates::{Candidates, Object, ObjectLists};
 pub use dump::{dump_plans, dump_plans_json};
 pub use inspect::{Inspected, Sight, inspect};
@@ -149,18 +148,6 @@ impl Plan<'_> {
             Some(table) => table.get(self.place(receiver) * self.scene.lights.len() + light_idx),
             None => self.everything.as_candidates(),
         }
-    }
-
-    /// Tells whether an object may lie between a point of `region`, off the object, and a light: `false` is proved.
-    ///
-    /// `light_idx`: in [`Scene::lights`]. It takes about as long as some ten tests of a ray.
-    #[must_use]
-    pub fn may_lie_between(&self, region: &Region, light_idx: usize, object: Object) -> bool {
-        let solid = match &self.known {
-            Some(known) => known.solids[self.place(object)],
-            None => self.scene.solid(object),
-        };
-        shadows::may_lie_between(region, self.scene.lights[light_idx].position, &solid)
     }
 
     /// Calls `visit` with each object that may have a point strictly between a light and another point, until it answers

@@ -14,7 +14,7 @@ pub enum Pass {
     Saturation,
     /// Reflected rays that can no longer change the pixel.
     Bounces,
-    /// Objects that cannot lie between a surface and a light.
+    /// Objects that cannot lie between a surface and a light, or between what a tile shows of it and a light.
     Shadows,
     /// Objects that the eye rays of a tile cannot meet.
     Tiles,

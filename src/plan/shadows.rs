@@ -17,11 +17,14 @@
 //!
 //! What holds the light and all of the receiver inside, as a room does, is convex: no ray from one to the other meets its
 //! surface.
+//!
+//! What lies between a light and the part of an object that a tile shows is less, and known when the tile's hits are: that
+//! part of the pass is the tracer's (`trace::wide::patch`).
 
 use glam::DVec3;
 
 use crate::math::Sign;
-use crate::plan::bodies::{Body, FacingDisc, Region, Solid, parts};
+use crate::plan::bodies::{Body, FacingDisc, Solid, parts};
 use crate::plan::candidates::ListTable;
 use crate::plan::cone::Cone;
 use crate::plan::objects::Roles;
@@ -157,9 +160,4 @@ fn sort_by_size(occluders: &mut [usize], light: DVec3, solids: &[Solid]) {
         }
     };
     occluders.sort_by(|&a, &b| size(b).total_cmp(&size(a)));
-}
-
-/// Tells whether `solid` may lie between a point of `region` and the light.
-pub(super) fn may_lie_between(region: &Region, light: DVec3, solid: &Solid) -> bool {
-    !parts(region, light, solid)
 }

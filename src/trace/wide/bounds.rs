@@ -235,6 +235,11 @@ pub(super) struct Terms {
 }
 
 impl Terms {
+    /// Tells whether lights add to a hit.
+    pub fn answers(&self) -> bool {
+        self.has_diffuse || self.has_specular
+    }
+
     /// Tells whether a hit's own colour is the same in all channels.
     pub fn is_grey(&self) -> bool {
         let is_grey = |[red, green, blue]: [f64; 3]| red == green && green == blue;

@@ -30,6 +30,7 @@ mod follow;
 mod horizon;
 mod mirror;
 pub(super) mod notes;
+mod patch;
 mod queue;
 mod settle;
 mod shade;
@@ -45,7 +46,7 @@ use std::sync::OnceLock;
 pub(super) use self::bounds::FaceKind;
 
 use crate::math::{Ball64, Real};
-use crate::plan::{ObjectLists, Plan, Search};
+use crate::plan::{ObjectLists, Part, Pass, Plan, Search};
 use crate::trace::Counts;
 use crate::trace::kernels::Backend;
 use crate::trace::pixel::Sampling;
@@ -58,6 +59,7 @@ use self::eye::RowSphere;
 use self::fault::Fault;
 use self::flock::Flock;
 use self::notes::Notes;
+use self::patch::{Outlines, Patches};
 use self::queue::{Channels, Packet, Waiting};
 use self::shadow::LightOccluders;
 use self::tile::TileJob;
@@ -88,6 +90,8 @@ pub(super) struct Wide {
     is_crowd: bool,
     /// For each face, and then for each group, what can hide the lights from it, once it is met; none of a crowd.
     occluders: Vec<OnceLock<LightOccluders>>,
+    /// What patches of faces are held against; none of a crowd, and where the plan is not to leave out occluders.
+    outlines: Option<Outlines>,
     /// What packets of reflected rays are held against first.
     balls: Balls,
     /// Of the camera, rounded.
@@ -131,6 +135,8 @@ pub(super) struct Scratch {
     /// What is looked up in a crowd: for a packet of hits, and for one of reflected rays.
     around: Around,
     found: ObjectLists,
+    /// What can hide the lights from the packets of the tile.
+    patches: Patches,
     /// What is noted beside the pixels, if it is asked for.
     pub notes: Option<Notes>,
     counts: Counts,
@@ -167,6 +173,8 @@ impl Wide {
             (true, true) => Bounds::of_crowd(plan, eye)?.with_objects(plan),
         };
         let has_objects = bounds.has_objects;
+        let finds_shadows = !is_crowd && settings.part == Part::B && settings.passes.contains(Pass::Shadows);
+        let outlines = finds_shadows.then(|| Outlines::new(&bounds.lights));
         let n_slots = if is_crowd { 0 } else { bounds.faces.len() + bounds.groups.len() };
         let are_equal = bounds.terms.iter().all(|terms| terms.reflectance == 0.0 || terms.is_grey());
         let table = bounds.cluster.as_ref().and_then(|cluster| cluster.table.as_ref());
@@ -183,6 +191,7 @@ impl Wide {
             channels: if are_equal { Channels::Equal } else { Channels::Three },
             is_crowd,
             occluders: std::iter::repeat_with(OnceLock::new).take(n_slots).collect(),
+            outlines,
             balls: if has_objects && plan.mirrored().len() > MAX_GONE_THROUGH {
                 Balls::new(&plan.scene, precision)
             } else {
@@ -210,6 +219,7 @@ impl Wide {
             followed: Vec::new(),
             around: Around::default(),
             found: ObjectLists::default(),
+            patches: Patches::default(),
             notes: takes_notes.then(Notes::new),
             counts: Counts::default(),
         }

@@ -91,7 +91,7 @@ pub(super) fn shade<L: Lanes, const GREY: bool>(
     let none = L::Mask::from_bits(0);
     let zero = L::splat(0.0);
     let mut colors = Colors { color: splat_each(terms.ambient), error: zero, doubt: none, shadow_rays: 0 };
-    if !terms.has_diffuse && !terms.has_specular {
+    if !terms.answers() {
         return colors;
     }
     let mut any_lit = none;
@@ -99,6 +99,9 @@ pub(super) fn shade<L: Lanes, const GREY: bool>(
     let normal_slack = at.normal_error + L::splat(8.0 * L::U);
     let point_slack = at.point_error * L::splat(1026.0);
     for light_idx in 0..lights.len().min(terms.lights.len()) {
+        if occluders.is_hidden(light_idx) {
+            continue;
+        }
         let (light, light_terms) = (&lights[light_idx], &terms.lights[light_idx]);
         let w: [L; 3] = [
             at.point[0] - L::splat(light.position[0]),
@@ -117,9 +120,12 @@ pub(super) fn shade<L: Lanes, const GREY: bool>(
         let facing = faces & sure;
         let distance = a.sqrt();
         colors.shadow_rays += facing.bits().count_ones();
-        let (blocked, doubt) = shadow(light, occluders, light_idx, &w, a, distance, at, facing);
-        colors.doubt = colors.doubt | doubt;
-        let lit = facing & !blocked;
+        let mut lit = facing;
+        if !occluders.is_open(light_idx) {
+            let (blocked, doubt) = shadow(light, occluders, light_idx, &w, a, distance, at, facing);
+            colors.doubt = colors.doubt | doubt;
+            lit = facing & !blocked;
+        }
         if !lit.any() {
             continue;
         }

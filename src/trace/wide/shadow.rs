@@ -103,6 +103,18 @@ impl LightOccluders {
         self.hidden[light_idx]
     }
 
+    /// Tells whether nothing can hide any light, and each may be seen.
+    pub fn are_none(&self) -> bool {
+        (0..self.lists.len()).all(|light_idx| self.is_open(light_idx))
+    }
+
+    /// Tells whether nothing can hide a light.
+    #[inline(always)]
+    pub fn is_open(&self, light_idx: usize) -> bool {
+        let [spheres, cylinders] = &self.lists[light_idx];
+        spheres.is_empty() && cylinders.is_empty()
+    }
+
     /// Returns the spheres and the cylinders that can hide a light.
     pub fn of_light(&self, light_idx: usize) -> &[Vec<u32>; 2] {
         &self.lists[light_idx]
@@ -135,9 +147,6 @@ pub(super) fn shadow<L: Lanes>(
     at: &Points<L>,
     facing: L::Mask,
 ) -> (L::Mask, L::Mask) {
-    if occluders.hidden[light_idx] {
-        return (facing, L::Mask::from_bits(0));
-    }
     let mut open = facing;
     let mut vague = L::Mask::from_bits(0);
     let [spheres, cylinders] = &occluders.lists[light_idx];

@@ -46,6 +46,7 @@ impl Job for TileJob<'_> {
             self.meet::<L>(self.among);
             self.wide.fault.spoil_roots(&mut self.scratch.t);
             self.scratch.hits.sort_unstable_by_key(|hit| (hit.face, hit.packet));
+            self.look_at_patches::<L>();
             self.shade::<L>();
         }
         if samples > 1 {
@@ -54,7 +55,7 @@ impl Job for TileJob<'_> {
     }
 }
 
-impl TileJob<'_> {
+impl<'a> TileJob<'a> {
     /// Returns dx of the packet's eye rays and dy of its row.
     #[inline(always)]
     pub fn directions<L: Lanes>(&self, packet: usize) -> (L, f64) {
@@ -130,7 +131,7 @@ impl TileJob<'_> {
         let mut hit_idx = 0;
         loop {
             while hit_idx < n_hits && !self.scratch.waiting.is_full::<L>() {
-                self.shade_packet::<L>(self.scratch.hits[hit_idx]);
+                self.shade_packet::<L>(hit_idx);
                 hit_idx += 1;
             }
             let is_last = hit_idx == n_hits;
@@ -143,7 +144,8 @@ impl TileJob<'_> {
 
     /// Shades a packet of hits of eye rays.
     #[inline(always)]
-    fn shade_packet<L: Lanes>(&mut self, hit: PacketHit) {
+    fn shade_packet<L: Lanes>(&mut self, hit_idx: usize) {
+        let hit = self.scratch.hits[hit_idx];
         if let Some(flock) = &self.wide.flock
             && self.follow_flock::<L>(flock, hit)
         {
@@ -153,7 +155,7 @@ impl TileJob<'_> {
         let face = &self.bounds.faces[hit.face as usize];
         let terms = &self.wide.bounds.terms[face.surface];
         let at = self.points::<L>(face, packet, lanes);
-        let colors = self.local::<L, false>(face, false, &at);
+        let colors = self.local_on_patch(hit_idx, face, &at);
         self.mark_slow::<L>(packet, lanes & colors.doubt);
         let sure = lanes & !colors.doubt;
         if terms.reflectance > 0.0 {
@@ -202,6 +204,29 @@ impl TileJob<'_> {
         Points { point, normal, view, cosine, point_error, normal_error, length_error, dir_error, equation, active }
     }
 
+    /// Shades a packet of hits of eye rays without their reflections.
+    #[inline(always)]
+    fn local_on_patch<L: Lanes>(&mut self, hit_idx: usize, face: &Face, at: &Points<L>) -> Colors<L> {
+        if self.wide.is_crowd {
+            return self.local_in_crowd(face, at);
+        }
+        let whole = self.occluders(face, None);
+        let (bounds, Scratch { patches, counts, .. }) = (&self.wide.bounds, &mut *self.scratch);
+        let occluders = patches.at(hit_idx).unwrap_or(whole);
+        let colors = shade::shade::<L, false>(&bounds.lights, &bounds.terms[face.surface], occluders, at);
+        counts.shadow_rays += u64::from(colors.shadow_rays);
+        colors
+    }
+
+    /// Returns what can hide the lights from a face, or from all of its group.
+    #[inline(always)]
+    pub fn occluders(&self, face: &Face, group: Option<usize>) -> &'a LightOccluders {
+        let (wide, plan) = (self.wide, self.plan);
+        let bounds = &wide.bounds;
+        let slot = group.map_or_else(|| face_index(bounds, face), |group| bounds.faces.len() + group);
+        wide.occluders[slot].get_or_init(|| collect_occluders(bounds, plan, face, group))
+    }
+
     /// Shades a packet of hits without their reflections, on one face or, if it is shared, on those of its group.
     ///
     /// `GREY`: as in [`shade::shade`].
@@ -212,8 +237,7 @@ impl TileJob<'_> {
         }
         let bounds = &self.wide.bounds;
         let shared = face.group.filter(|_| is_shared).map(|group| group as usize);
-        let slot = shared.map_or_else(|| face_index(bounds, face), |group| bounds.faces.len() + group);
-        let occluders = self.wide.occluders[slot].get_or_init(|| collect_occluders(bounds, self.plan, face, shared));
+        let occluders = self.occluders(face, shared);
         let colors = shade::shade::<L, GREY>(&bounds.lights, &bounds.terms[face.surface], occluders, at);
         self.scratch.counts.shadow_rays += u64::from(colors.shadow_rays);
         colors
@@ -224,7 +248,7 @@ impl TileJob<'_> {
     fn local_in_crowd<L: Lanes>(&mut self, face: &Face, at: &Points<L>) -> Colors<L> {
         let (all, Scratch { around, counts, .. }) = (&self.wide.bounds, &mut *self.scratch);
         let terms = &all.terms[face.surface];
-        let is_known = !(terms.has_diffuse || terms.has_specular) || around.look_up(all, self.plan, face, at);
+        let is_known = !terms.answers() || around.look_up(all, self.plan, face, at);
         if !is_known {
             let zero = L::splat(0.0);
             return Colors { color: [zero; 3], error: zero, doubt: at.active, shadow_rays: 0 };
