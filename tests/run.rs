@@ -202,6 +202,7 @@ fn stats_as_json_are_one_document() {
     assert_eq!((&image["path"], &image["width"], &image["height"]), (&"a.png".into(), &30.into(), &20.into()));
     assert_eq!(image["bytes"], folder.bytes("a.png").len());
     assert!(image["skipped"]["eye_tests_not_made"].is_u64() && image["shares_with"].is_null());
+    assert!(image["skipped"]["shadow_tests_not_made"].is_u64());
     assert_eq!(document["scenes"][1]["outcome"], "scene_errors");
 }
 
@@ -213,7 +214,7 @@ fn stats_as_a_table_name_every_time_and_count() {
     for row in ["parse", "lower", "trace", "encode", "eye rays", "reflected rays", "shadow rays", "tests", "ties"] {
         assert_says(&call.stdout, &format!("\n  {row} "));
     }
-    for row in ["objects left out", "terms not computed", "tiles not visited", "eye rays not cast"] {
+    for row in ["objects left out", "tiles not visited", "eye rays not cast", "shadow rays not cast"] {
         assert_says(&call.stdout, &format!("\n  {row} "));
     }
     folder.put("a.cli", scene("a.png") + "write b.png\n");

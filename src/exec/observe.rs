@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use crate::exec::Proof;
 use crate::plan::{Precision, Savings, Size};
-use crate::trace::Counts;
+use crate::trace::{Counts, Spared};
 
 /// Watches an execution. Any thread of the pool may call it, but events come one at a time and in order; `()` watches
 /// nothing.
@@ -90,6 +90,8 @@ pub struct WriteReport {
     pub origin: Origin,
     /// What its plan leaves out before any ray is cast.
     pub savings: Savings,
+    /// What was left out as it was traced.
+    pub spared: Spared,
     /// Rays and tests.
     pub counts: Counts,
     /// What stands behind its pixels, where everything is proved.

@@ -11,7 +11,7 @@ use crate::exec::{Event, ExecError, ImageRequest, Options, Origin, Proof, Sink, 
 use crate::image::Crc32;
 use crate::ir::{SceneView, Valid};
 use crate::plan::{Precision, Savings, Settings, plan};
-use crate::trace::{Counts, Tracer};
+use crate::trace::{Counts, Spared, Tracer};
 
 /// What is copied between two looks at the cancellation.
 const CHUNK_BYTES: usize = 1 << 20;
@@ -142,6 +142,7 @@ impl Write<'_> {
             };
         }
         let canvas = earlier.canvas(self.write_idx, &plan, shared.is_some());
+        let n_objects = (plan.report.n_spheres + plan.report.n_cylinders) as u64;
         let tracer = Tracer::new(plan);
         let tracer = match canvas {
             Some(canvas) => tracer.upon(canvas, shared.map(|(_, changed)| changed)),
@@ -151,7 +152,9 @@ impl Write<'_> {
             Some(referee) => tracer.settled_by(referee),
             None => tracer,
         };
-        self.stream(&Painter::Traced(Box::new(tracer)), file, report)
+        let file = self.stream(&Painter::Traced(Box::new(tracer)), file, report)?;
+        report.spared = report.counts.spared(n_objects);
+        Ok(file)
     }
 
     /// Copies the file of an earlier `write`.
@@ -189,6 +192,7 @@ impl Write<'_> {
             n_bytes: 0,
             origin: Origin::Traced,
             savings: Savings::default(),
+            spared: Spared::default(),
             counts: Counts::default(),
             proof: None,
             crc32: None,

@@ -106,7 +106,10 @@ impl<'a, 'p, R: Real> Integrator<'a, 'p, R> {
             return test(self, ray, among);
         }
         let mut found = mem::take(&mut self.found);
-        let answer = look_up::along(self.plan, ray, &mut found, among).and_then(|among| test(self, ray, among));
+        let answer = look_up::along(self.plan, ray, &mut found, among).and_then(|among| {
+            self.judge.counts.reflected_tests += among.len() as u64;
+            test(self, ray, among)
+        });
         self.found = found;
         answer
     }

@@ -31,7 +31,7 @@ mod unrounded;
 mod wide;
 
 pub use canvas::Canvas;
-pub use counts::Counts;
+pub use counts::{Counts, Spared};
 pub use referee::Referee;
 pub use touch::Touches;
 pub use unrounded::Unrounded;

@@ -91,6 +91,9 @@ impl<R: Real> Integrator<'_, '_, R> {
             return Ok(color);
         }
         let plan = self.plan;
+        if plan.settings.part == Part::B {
+            self.judge.counts.lightings += plan.scene.lights.len() as u64;
+        }
         for light_idx in plan.lights(at.object).iter().map(|&light| light as usize) {
             let light = &plan.scene.lights[light_idx];
             let to_light = Vector::exact(light.position) - at.point;
@@ -106,14 +109,17 @@ impl<R: Real> Integrator<'_, '_, R> {
         if self.plan.settings.part == Part::A {
             return Ok(false);
         }
-        self.judge.counts.shadow_rays += 1;
         let leaving = Leaving { equation: at.equation, inward: at.from_inside };
         let light = self.plan.scene.lights[light_idx].position;
         let ray = Ray { origin: at.point, dir: to_light, aim: None, leaving: Some(leaving), light: Some(light) };
         let mut found = mem::take(&mut self.found);
         let listed = self.plan.occluders(at.object, light_idx);
         let among = look_up::before_light(self.plan, light_idx, &ray, &mut found, listed);
-        let answer = among.and_then(|among| self.occluded(&ray, light, among));
+        let answer = among.and_then(|among| {
+            self.judge.counts.shadow_rays += u64::from(!among.is_empty());
+            self.judge.counts.shadow_tests += among.len() as u64;
+            self.occluded(&ray, light, among)
+        });
         self.found = found;
         answer
     }

@@ -225,8 +225,9 @@ impl TileJob<'_> {
     #[inline(always)]
     fn local<L: SingleLanes>(&mut self, face: &Face, at: &Points<L>, lanes: L::Mask) -> [L; 3] {
         let lights = face.lights.get_or_init(|| FaceLights::new(self.plan, face));
-        let (color, n_shadow_rays) = shade::shade(lights, &self.draft.scene.surfaces[face.surface], at, lanes);
-        self.scratch.counts.shadow_rays += u64::from(n_shadow_rays);
+        let (color, counted) = shade::shade(lights, &self.draft.scene.surfaces[face.surface], at, lanes);
+        self.scratch.counts.add_shadow_rays(counted.n_rays, counted.n_tests);
+        self.scratch.counts.lightings += u64::from(lights.n_lightings) * u64::from(lanes.bits().count_ones());
         color
     }
 
@@ -244,6 +245,7 @@ impl TileJob<'_> {
         let mirror = Mirror { reflectance, leaving: first as f32, equation };
         let (reflected, open) = mirror::reflect(mirror, at, color, rays);
         self.finish(&reflected, [L::same(0.0); 3], lanes & !open);
+        self.scratch.counts.settled_rays += u64::from((lanes & !open).bits().count_ones());
         let lanes = lanes & open;
         self.scratch.counts.reflected_rays += u64::from(lanes.bits().count_ones());
         if lanes.any() {
@@ -263,7 +265,7 @@ impl TileJob<'_> {
         } else {
             self.plan.mirrored()
         };
-        self.scratch.counts.tests += among.len() as u64 * u64::from(active.bits().count_ones());
+        self.scratch.counts.add_reflected_tests(active.bits().count_ones(), among.len());
         let nearest = meet::reflected_meets(scene, among.spheres, among.cylinders, &rays.path, active);
         let met = active & nearest.met();
         self.finish(rays, meet::same(scene::single(self.plan.scene.background.to_array())), active & !met);

@@ -22,27 +22,36 @@ pub(super) struct Points<L: SingleLanes> {
     pub view: [L; 3],
 }
 
-/// Shades a packet of hits without their reflections; returns the colour, not clamped, and how many shadow rays it took.
+/// How many shadow rays a packet took, and how many tests.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct ShadowRays {
+    pub n_rays: u32,
+    pub n_tests: u32,
+}
+
+/// Shades a packet of hits without their reflections; returns the colour, not clamped, and what shadow rays it took.
 #[inline(always)]
 pub(super) fn shade<L: SingleLanes>(
     lights: &FaceLights,
     surface: &Surface,
     at: &Points<L>,
     active: L::Mask,
-) -> ([L; 3], u32) {
+) -> ([L; 3], ShadowRays) {
     let (zero, half, one) = (L::same(0.0), L::same(0.5), L::same(1.0));
     let mut color = same::<L>(surface.ambient);
-    let mut n_shadow_rays = 0;
-    for light in &lights.0 {
+    let mut counted = ShadowRays::default();
+    for light in &lights.lights {
         let w = minus(at.point, light.position);
         let toward = -dot(at.normal, w);
         let facing = active & toward.gt(zero);
         if !facing.any() {
             continue;
         }
-        n_shadow_rays += facing.bits().count_ones();
         let a = dot(w, w);
-        let lit = light.reaches(w, a, at.point, facing);
+        let (lit, n_tested) = light.reaches(w, a, at.point, facing);
+        let n_rays = if n_tested > 0 { facing.bits().count_ones() } else { 0 };
+        counted.n_rays += n_rays;
+        counted.n_tests += n_rays * n_tested;
         if !lit.any() {
             continue;
         }
@@ -63,7 +72,7 @@ pub(super) fn shade<L: SingleLanes>(
             color[2] + L::select(lit, sum[2], zero),
         ];
     }
-    (color, n_shadow_rays)
+    (color, counted)
 }
 
 /// Returns x^P, given x².

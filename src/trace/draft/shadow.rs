@@ -19,7 +19,11 @@ const FAR: f64 = 1.0 / 8.0;
 
 /// The lights that may shine on a face.
 #[derive(Debug)]
-pub(super) struct FaceLights(pub Vec<FaceLight>);
+pub(super) struct FaceLights {
+    pub lights: Vec<FaceLight>,
+    /// How many lights there are in the scene, if the face answers any and shadows matter.
+    pub n_lightings: u32,
+}
 
 /// A light as a face sees it.
 #[derive(Debug)]
@@ -74,7 +78,9 @@ impl FaceLights {
                 })
             })
             .collect();
-        Self(lights)
+        let zero = glam::DVec3::ZERO;
+        let answers = is_b && (surface.diffuse != zero || surface.specular != zero);
+        Self { lights, n_lightings: if answers { scene.lights.len() as u32 } else { 0 } }
     }
 }
 
@@ -136,14 +142,16 @@ fn cylinder_between(scene: &Scene<'_>, i: usize, light: [f64; 3]) -> Option<Cyli
 }
 
 impl FaceLight {
-    /// Tells to which of the facing points the light comes.
+    /// Tells to which of the facing points the light comes, and how many objects were tested.
     ///
     /// `w`, `a`: from the light to the points, and the squared lengths.
     #[inline(always)]
-    pub fn reaches<L: SingleLanes>(&self, w: [L; 3], a: L, point: [L; 3], facing: L::Mask) -> L::Mask {
+    pub fn reaches<L: SingleLanes>(&self, w: [L; 3], a: L, point: [L; 3], facing: L::Mask) -> (L::Mask, u32) {
         let zero = L::same(0.0);
         let mut open = facing;
+        let mut n_tested = 0;
         for sphere in &self.spheres {
+            n_tested += 1;
             let b = w[0] * L::same(sphere.m[0]) + w[1] * L::same(sphere.m[1]) + w[2] * L::same(sphere.m[2]);
             let mut blocked = open & (b * b).gt(a * L::same(sphere.power)) & b.gt(zero) & b.lt(a);
             if blocked.any() {
@@ -152,17 +160,18 @@ impl FaceLight {
                 }
                 open = open & !blocked;
                 if !open.any() {
-                    return open;
+                    return (open, n_tested);
                 }
             }
         }
         for cylinder in &self.cylinders {
+            n_tested += 1;
             open = open & !self.is_behind(cylinder, w, point[1], open);
             if !open.any() {
-                return open;
+                break;
             }
         }
-        open
+        (open, n_tested)
     }
 
     /// Tells which of the open segments meet a cylinder.

@@ -29,7 +29,7 @@
 
 use crate::ir::Surface;
 use crate::math::DoubleDouble;
-use crate::plan::{Candidates, Light, Object, Part, Plan, Scene};
+use crate::plan::{Candidates, Light, Object, Part, Pass, Plan, Scene};
 use crate::trace::kernels::Precision;
 use crate::trace::wide::cluster::Cluster;
 
@@ -228,6 +228,8 @@ pub(super) struct Terms {
     pub steepness: f64,
     /// 0 when nothing is reflected.
     pub reflectance: f64,
+    /// Lights that a hit may be lit by: none where no light is answered, or shadows do not matter.
+    pub n_lightings: u32,
     /// Whether no term is negative.
     pub is_nonnegative: bool,
     /// A bound on what the sums of all terms lose to rounding.
@@ -256,6 +258,8 @@ pub(super) struct LightTerms {
     /// Their largest magnitudes.
     pub max_diffuse: f64,
     pub max_specular: f64,
+    /// Whether all channels may be full when the lights before it have been added, and no term can make them smaller.
+    pub may_be_idle: bool,
 }
 
 /// The constants of one image.
@@ -736,7 +740,26 @@ fn occluder(m: [DoubleDouble; 3], power: f64, radius: f64, [y_min, y_max]: [f64;
 /// Multiplies out what each surface makes of each light.
 fn all_terms(plan: &Plan<'_>, precision: Precision) -> Vec<Terms> {
     let Plan { scene, settings, .. } = plan;
-    scene.surfaces.iter().map(|surface| terms_of(surface, &scene.lights, settings.part, precision)).collect()
+    let all = scene.surfaces.iter().map(|surface| terms_of(surface, &scene.lights, settings.part, precision));
+    let mut all: Vec<_> = all.collect();
+    if settings.passes.contains(Pass::Saturation) {
+        all.iter_mut().for_each(find_idle);
+    }
+    all
+}
+
+/// Finds the lights before which all channels may be full, where no term is negative.
+fn find_idle(terms: &mut Terms) {
+    if !terms.is_nonnegative {
+        return;
+    }
+    let mut sum = terms.ambient;
+    for light in &mut terms.lights {
+        light.may_be_idle = sum.iter().all(|channel| *channel > 1.0);
+        for k in 0..3 {
+            sum[k] += light.diffuse[k] + light.specular[k];
+        }
+    }
 }
 
 fn terms_of(surface: &Surface, lights: &[Light], part: Part, precision: Precision) -> Terms {
@@ -752,6 +775,7 @@ fn terms_of(surface: &Surface, lights: &[Light], part: Part, precision: Precisio
                 specular: specular.to_array(),
                 max_diffuse: largest(diffuse),
                 max_specular: largest(specular),
+                may_be_idle: false,
             }
         })
         .collect();
@@ -762,11 +786,13 @@ fn terms_of(surface: &Surface, lights: &[Light], part: Part, precision: Precisio
         p if p.fract() == 0.0 && p <= 1e6 => Power::Whole { half: (p / 2.0) as u32, is_odd: p % 2.0 == 1.0 },
         p => Power::Other(p),
     };
+    let (has_diffuse, has_specular) = (surface.diffuse != zero, specular != zero);
     let terms = |terms: &LightTerms| terms.diffuse.into_iter().chain(terms.specular).all(|term| term >= 0.0);
     Terms {
         ambient: ambient.to_array(),
-        has_diffuse: surface.diffuse != zero,
-        has_specular: specular != zero,
+        has_diffuse,
+        has_specular,
+        n_lightings: if is_b && (has_diffuse || has_specular) { lights.len() as u32 } else { 0 },
         power,
         steepness: shininess.max(1.0),
         reflectance: if is_b { surface.reflectance.max(0.0) } else { 0.0 },

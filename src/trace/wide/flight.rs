@@ -44,12 +44,12 @@ impl TileJob<'_> {
         let (zero, one) = (L::splat(0.0), L::splat(1.0));
         let mut story = Story { sum: zero, ceiling: one, error: zero, weight: 1.0 };
         let max_level = self.plan.settings.max_level;
-        let n_ways = flock.balls.len() as u64 - 1;
+        let n_ways = flock.balls.len() - 1;
         loop {
             self.light_flock(flock, packet, &mut flight, &mut story);
-            let n_rays = u64::from(flight.lanes.bits().count_ones());
-            self.scratch.counts.reflected_rays += n_rays;
-            self.scratch.counts.tests += n_rays * n_ways;
+            let n_rays = flight.lanes.bits().count_ones();
+            self.scratch.counts.reflected_rays += u64::from(n_rays);
+            self.scratch.counts.add_reflected_tests(n_rays, n_ways);
             let ahead = flock.look_ahead(&flight);
             let group = ahead.lead & ahead.sure & !ahead.wild;
             if group.bits() != flight.lanes.bits() || flight.level > max_level {
@@ -79,6 +79,8 @@ impl TileJob<'_> {
     /// Adds the colour of a packet of hits to what becomes of it, and the mirror; lanes in doubt are left out.
     #[inline(always)]
     fn light_flock<L: Lanes>(&mut self, flock: &Flock, packet: usize, flight: &mut Flight<L>, story: &mut Story<L>) {
+        let n_hits = flight.lanes.bits().count_ones();
+        self.scratch.counts.lightings += u64::from(flock.n_lightings) * u64::from(n_hits);
         let weight = L::splat(story.weight);
         let before = story.sum;
         if flock.ambient > 0.0 {
@@ -90,7 +92,6 @@ impl TileJob<'_> {
             let height = light.height(flight.normal);
             let mut lit = height.gt(flight.slack + L::splat(light.open));
             let seen = flight.lanes & !height.lt(-flight.slack);
-            self.scratch.counts.shadow_rays += u64::from(seen.bits().count_ones());
             let unknown = seen & !lit;
             if unknown.any() {
                 let (others, doubt) = self.seek_light(flock, light, flight, height, unknown);
@@ -110,7 +111,7 @@ impl TileJob<'_> {
     /// Tells which of the lanes see a light, given its height, and which perhaps.
     #[inline(always)]
     fn seek_light<L: Lanes>(
-        &self,
+        &mut self,
         flock: &Flock,
         light: &BallLight,
         flight: &Flight<L>,
@@ -137,7 +138,9 @@ impl TileJob<'_> {
         let w = [origin[0] - position[0], origin[1] - position[1], origin[2] - position[2]];
         let a = dot(w, w);
         let occluders = &flock.balls[flight.ball].occluders;
-        let (hidden, doubt) = shadow(wide_light, occluders, light.light_idx, &w, a, a.sqrt(), &at, facing);
+        let (hidden, doubt, n_tested) = shadow(wide_light, occluders, light.light_idx, &w, a, a.sqrt(), &at, facing);
+        let n_rays = facing.bits().count_ones();
+        self.scratch.counts.add_shadow_rays(n_rays, n_rays * n_tested);
         (facing & !(hidden | doubt), doubt | (lanes & !facing))
     }
 

@@ -67,6 +67,8 @@ pub(super) struct Flock {
     pub color_rounding: f64,
     pub reflectance: f64,
     pub ambient: f64,
+    /// As in [`Terms`](crate::trace::wide::bounds::Terms).
+    pub n_lightings: u32,
 }
 
 /// A sphere of a cluster.
@@ -172,6 +174,7 @@ impl Flock {
             color_rounding: terms.rounding,
             reflectance: terms.reflectance,
             ambient: terms.ambient[0],
+            n_lightings: terms.n_lightings,
             balls,
         })
     }

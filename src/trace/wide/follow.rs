@@ -95,7 +95,7 @@ impl<'a> TileJob<'a> {
     fn follow_in_cluster<L: Lanes>(&mut self, cluster: &Cluster, table: &Table, packet: &Packet) {
         let bounds = self.bounds;
         let among = self.plan.mirrored().spheres;
-        self.scratch.counts.tests += among.len() as u64 * u64::from(packet.lanes::<L>().bits().count_ones());
+        self.scratch.counts.add_reflected_tests(packet.lanes::<L>().bits().count_ones(), among.len());
         let rays = packet.rays::<L>();
         let nearest = mirror::meet_cluster(cluster, &bounds.mirrored, among, &rays, false);
         let met = self.finish_missed(packet, &nearest);
@@ -111,7 +111,7 @@ impl<'a> TileJob<'a> {
     #[inline(always)]
     fn follow_among<L: Lanes>(&mut self, among: Candidates<'_>, packet: &Packet) {
         let (bounds, active) = (self.bounds, packet.lanes::<L>());
-        self.scratch.counts.tests += among.len() as u64 * u64::from(active.bits().count_ones());
+        self.scratch.counts.add_reflected_tests(active.bits().count_ones(), among.len());
         let nearest = mirror::nearest_hit::<L>(bounds, among.spheres, among.cylinders, &packet.rays(), active);
         let met = self.finish_missed(packet, &nearest);
         let mut faces = eye::LaneArray([0.0; eye::MAX_LANES]);

@@ -99,6 +99,8 @@ pub(super) struct Wide {
     background: u32,
     /// Along a side of a pixel.
     samples: u32,
+    /// Of a reflected ray that weighs less it is asked whether its pixel is settled; see `settle`.
+    max_settled_weight: f64,
     /// Which channels the paths of mirrored colours have.
     channels: Channels,
     /// Whether all that mirrors show are spheres of a cluster, of one surface which is grey.
@@ -173,6 +175,8 @@ impl Wide {
             (true, true) => Bounds::of_crowd(plan, eye)?.with_objects(plan),
         };
         let has_objects = bounds.has_objects;
+        let ends_bounces = settings.samples == 1 && settings.passes.contains(Pass::Bounces);
+        let max_settled_weight = if ends_bounces { settle::MAX_SETTLED_WEIGHT } else { 0.0 };
         let finds_shadows = !is_crowd && settings.part == Part::B && settings.passes.contains(Pass::Shadows);
         let outlines = finds_shadows.then(|| Outlines::new(&bounds.lights));
         let n_slots = if is_crowd { 0 } else { bounds.faces.len() + bounds.groups.len() };
@@ -200,6 +204,7 @@ impl Wide {
             step: step.value(),
             background: u32::from_le_bytes([background[0], background[1], background[2], 0]),
             samples: settings.samples,
+            max_settled_weight,
             fault: Fault::NONE,
         })
     }

@@ -1,10 +1,17 @@
 //! Pixels are settled: a colour that is found is rounded to bytes, or added to those of the pixel's other samples; what is
 //! not proved is left to finer arithmetic.
+//!
+//! # Rays that are not cast
+//! A reflected ray finds a colour x within 0…1, and the channel min(A + B·x, H) does not fall as x grows. So if 0 and 1 give
+//! the same bytes, both proved, the pixel has them whatever the ray meets; a ray of a small weight B often ends so.
 
 use crate::trace::kernels::{Lanes, Mask};
-use crate::trace::wide::queue::Packet;
+use crate::trace::wide::queue::{Packet, Paths};
 use crate::trace::wide::tile::{TileJob, numbers};
 use crate::trace::wide::{TILE_PIXELS, eye, mirror, shade};
+
+/// Of a ray that weighs more than some levels it is not asked whether its pixel is settled: it seldom is.
+pub(super) const MAX_SETTLED_WEIGHT: f64 = 1.0 / 64.0;
 
 impl TileJob<'_> {
     /// Leaves the pixels of these lanes of a packet to finer arithmetic.
@@ -78,10 +85,38 @@ impl TileJob<'_> {
         let error = self.wide.fault.bound(error);
         let (bytes, proved) = shade::quantise(color, error);
         self.mark_places(paths.pixel, lanes & !proved);
+        self.note(paths.pixel, color, error, lanes & proved);
+        self.put(paths.pixel, bytes, lanes & proved);
+    }
+
+    /// Settles the pixels whose bytes are the same whatever their rays find, and returns their lanes.
+    #[inline(always)]
+    pub fn finish_settled<L: Lanes>(&mut self, paths: &Paths<L>, lanes: L::Mask) -> L::Mask {
+        let (zero, half, one) = (L::splat(0.0), L::splat(0.5), L::splat(1.0));
+        let (least, error) = mirror::compose(paths, [zero; 3], zero);
+        let (most, _) = mirror::compose(paths, [one; 3], zero);
+        let error = self.wide.fault.bound(error);
+        let (bytes, is_low_proved) = shade::quantise(least, error);
+        let (high_bytes, is_high_proved) = shade::quantise(most, error);
+        let settled = lanes & is_low_proved & is_high_proved & bytes.eq(high_bytes);
+        // What is noted is the middle, and how far off it may be.
+        let (mut middle, mut reach) = (least, zero);
+        for k in 0..3 {
+            let spread = (most[k] - least[k]) * half;
+            middle[k] = least[k] + spread;
+            reach = reach.max(spread);
+        }
+        self.note(paths.pixel, middle, error + reach, settled);
+        self.put(paths.pixel, bytes, settled);
+        self.scratch.counts.settled_rays += u64::from(settled.bits().count_ones());
+        settled
+    }
+
+    /// Writes the bytes of pixels, wherever they lie.
+    #[inline(always)]
+    fn put<L: Lanes>(&mut self, places_of_lanes: L, bytes: L, lanes: L::Mask) {
         let (mut places, mut found) = ([0.0; eye::MAX_LANES], [0; eye::MAX_LANES]);
-        paths.pixel.store(&mut places);
-        let lanes = lanes & proved;
-        self.note(paths.pixel, color, error, lanes);
+        places_of_lanes.store(&mut places);
         bytes.store_whole(lanes, &mut found);
         let mut rest = lanes.bits();
         while rest != 0 {

@@ -10,6 +10,10 @@
 //!   relative error of s is halved, and n·H ≤ 1;
 //! - (n·H)^P is off by P times that for P ≥ 1, by the mean value theorem on 0…1, and by at most 64 times that for P < 1
 //!   where n·H > 2⁻⁶.
+//!
+//! # Full channels
+//! Where no term is negative, a channel that is above 1 by more than its error stays above whatever other lights add, and is
+//! clamped. So when all channels of a packet are full, the lights that are left are not looked at (pass `saturation`).
 
 use crate::trace::kernels::{Lanes, Mask, Precision};
 use crate::trace::wide::bounds::{Power, Terms, WideLight};
@@ -61,8 +65,9 @@ pub(super) struct Colors<L: Lanes> {
     pub error: L,
     /// The lanes in which a light may be lit or not.
     pub doubt: L::Mask,
-    /// How many shadow rays it took.
+    /// How many shadow rays it took, and tests of these.
     pub shadow_rays: u32,
+    pub shadow_tests: u32,
 }
 
 /// Returns a·b.
@@ -90,7 +95,8 @@ pub(super) fn shade<L: Lanes, const GREY: bool>(
 ) -> Colors<L> {
     let none = L::Mask::from_bits(0);
     let zero = L::splat(0.0);
-    let mut colors = Colors { color: splat_each(terms.ambient), error: zero, doubt: none, shadow_rays: 0 };
+    let mut colors =
+        Colors { color: splat_each(terms.ambient), error: zero, doubt: none, shadow_rays: 0, shadow_tests: 0 };
     if !terms.answers() {
         return colors;
     }
@@ -103,6 +109,9 @@ pub(super) fn shade<L: Lanes, const GREY: bool>(
             continue;
         }
         let (light, light_terms) = (&lights[light_idx], &terms.lights[light_idx]);
+        if light_terms.may_be_idle && !(at.active & !(colors.doubt | are_full(&colors))).any() {
+            break;
+        }
         let w: [L; 3] = [
             at.point[0] - L::splat(light.position[0]),
             at.point[1] - L::splat(light.position[1]),
@@ -119,10 +128,12 @@ pub(super) fn shade<L: Lanes, const GREY: bool>(
         colors.doubt = colors.doubt | (faces & !sure);
         let facing = faces & sure;
         let distance = a.sqrt();
-        colors.shadow_rays += facing.bits().count_ones();
         let mut lit = facing;
         if !occluders.is_open(light_idx) {
-            let (blocked, doubt) = shadow(light, occluders, light_idx, &w, a, distance, at, facing);
+            let (blocked, doubt, n_tested) = shadow(light, occluders, light_idx, &w, a, distance, at, facing);
+            let n_rays = facing.bits().count_ones();
+            colors.shadow_rays += n_rays;
+            colors.shadow_tests += n_rays * n_tested;
             colors.doubt = colors.doubt | doubt;
             lit = facing & !blocked;
         }
@@ -168,6 +179,13 @@ pub(super) fn shade<L: Lanes, const GREY: bool>(
     // Where no light adds anything the colour is exact.
     colors.error = L::select(any_lit, colors.error + L::splat(terms.rounding), colors.error);
     colors
+}
+
+/// Tells in which lanes all channels are surely beyond 1.
+#[inline(always)]
+fn are_full<L: Lanes>(colors: &Colors<L>) -> L::Mask {
+    let full = colors.error + L::splat(1.0);
+    colors.color[0].gt(full) & colors.color[1].gt(full) & colors.color[2].gt(full)
 }
 
 /// Adds a share of a term to a colour.

@@ -131,7 +131,7 @@ pub(super) fn is_behind_cap(cylinder: &Occluder, light_height: f64, face: &Face)
     }
 }
 
-/// Tells from which of the points a light is surely hidden, and of which that is in doubt.
+/// Tells from which of the points a light is surely hidden, and of which that is in doubt; and how many objects were tested.
 ///
 /// `w`, `a`, `distance`: from the light to the points, their squared lengths and their lengths. `facing`: the lanes that
 /// are asked for.
@@ -146,7 +146,7 @@ pub(super) fn shadow<L: Lanes>(
     distance: L,
     at: &Points<L>,
     facing: L::Mask,
-) -> (L::Mask, L::Mask) {
+) -> (L::Mask, L::Mask, u32) {
     let mut open = facing;
     let mut vague = L::Mask::from_bits(0);
     let [spheres, cylinders] = &occluders.lists[light_idx];
@@ -159,7 +159,9 @@ pub(super) fn shadow<L: Lanes>(
         light_height: light.position[1],
     };
     let tau = distance * segment.error;
+    let mut n_tested = 0;
     for &i in spheres {
+        n_tested += 1;
         let sphere = &light.spheres[i as usize];
         let b = dot(*w, splat_each(sphere.m));
         let discriminant = b.mul_add(b, -(a * L::splat(sphere.power)));
@@ -173,11 +175,12 @@ pub(super) fn shadow<L: Lanes>(
             vague = vague | (near & doubt);
             open = open & !(near & blocked);
             if !open.any() {
-                return (facing, vague & open);
+                return (facing, vague & open, n_tested);
             }
         }
     }
     for &i in cylinders {
+        n_tested += 1;
         let cylinder = &light.cylinders[i as usize];
         let (blocked, doubt) = behind_cylinder(cylinder, &segment, tau, open);
         vague = vague | doubt;
@@ -187,7 +190,7 @@ pub(super) fn shadow<L: Lanes>(
         }
     }
     // A doubt about one object does not matter where another surely hides the light.
-    (facing & !open, vague & open)
+    (facing & !open, vague & open, n_tested)
 }
 
 /// A packet of segments from a light.

@@ -214,7 +214,8 @@ impl<'a> TileJob<'a> {
         let (bounds, Scratch { patches, counts, .. }) = (&self.wide.bounds, &mut *self.scratch);
         let occluders = patches.at(hit_idx).unwrap_or(whole);
         let colors = shade::shade::<L, false>(&bounds.lights, &bounds.terms[face.surface], occluders, at);
-        counts.shadow_rays += u64::from(colors.shadow_rays);
+        counts.add_shadow_rays(colors.shadow_rays, colors.shadow_tests);
+        self.count_lightings::<L>(face, at.active);
         colors
     }
 
@@ -239,7 +240,8 @@ impl<'a> TileJob<'a> {
         let shared = face.group.filter(|_| is_shared).map(|group| group as usize);
         let occluders = self.occluders(face, shared);
         let colors = shade::shade::<L, GREY>(&bounds.lights, &bounds.terms[face.surface], occluders, at);
-        self.scratch.counts.shadow_rays += u64::from(colors.shadow_rays);
+        self.count_lightings::<L>(face, at.active);
+        self.scratch.counts.add_shadow_rays(colors.shadow_rays, colors.shadow_tests);
         colors
     }
 
@@ -251,14 +253,22 @@ impl<'a> TileJob<'a> {
         let is_known = !terms.answers() || around.look_up(all, self.plan, face, at);
         if !is_known {
             let zero = L::splat(0.0);
-            return Colors { color: [zero; 3], error: zero, doubt: at.active, shadow_rays: 0 };
+            return Colors { color: [zero; 3], error: zero, doubt: at.active, shadow_rays: 0, shadow_tests: 0 };
         }
         let colors = shade::shade::<L, false>(around.lights(all), terms, &around.occluders, at);
-        counts.shadow_rays += u64::from(colors.shadow_rays);
+        counts.add_shadow_rays(colors.shadow_rays, colors.shadow_tests);
+        self.count_lightings::<L>(face, at.active);
         colors
     }
 
-    /// Puts the reflections of a packet of hits into the queue.
+    /// Counts what lights may be to a packet of hits.
+    #[inline(always)]
+    fn count_lightings<L: Lanes>(&mut self, face: &Face, active: L::Mask) {
+        let terms = &self.wide.bounds.terms[face.surface];
+        self.scratch.counts.lightings += u64::from(terms.n_lightings) * u64::from(active.bits().count_ones());
+    }
+
+    /// Puts the reflections of a packet of hits into the queue, but for those of which the pixel is settled.
     #[inline(always)]
     pub fn send_on<L: Lanes>(
         &mut self,
@@ -273,8 +283,14 @@ impl<'a> TileJob<'a> {
             self.mark_places(paths.pixel, lanes);
             return;
         }
+        let paths = mirror::go_on(terms, colors, paths);
+        let mut lanes = lanes;
+        let light = lanes & paths.weight.lt(L::splat(self.wide.max_settled_weight));
+        if light.any() {
+            lanes = lanes & !self.finish_settled(&paths, light);
+        }
         self.scratch.counts.reflected_rays += u64::from(lanes.bits().count_ones());
-        self.scratch.waiting.push(&mirror::reflect(at), &mirror::go_on(terms, colors, paths), lanes);
+        self.scratch.waiting.push(&mirror::reflect(at), &paths, lanes);
     }
 }
 

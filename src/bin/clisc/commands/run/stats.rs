@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use clisc::exec::{Origin, WriteReport};
 use clisc::plan::Savings;
-use clisc::trace::Counts;
+use clisc::trace::{Counts, Spared};
 use serde::{Serialize, Serializer};
 
 use crate::disk;
@@ -47,9 +47,19 @@ pub struct SceneStats {
     save: Duration,
     #[serde(flatten)]
     counts: Counts,
-    /// What the plans of the images left out.
-    skipped: Savings,
+    skipped: Skipped,
     images: Vec<ImageStats>,
+}
+
+/// What was left out.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+struct Skipped {
+    /// By plans, before any ray was cast.
+    #[serde(flatten)]
+    planned: Savings,
+    /// While tracing.
+    #[serde(flatten)]
+    traced: Spared,
 }
 
 /// What one image took.
@@ -71,8 +81,7 @@ struct ImageStats {
     total: Duration,
     #[serde(flatten)]
     counts: Counts,
-    /// What its plan left out.
-    skipped: Savings,
+    skipped: Skipped,
     /// The earlier `write`, from 0, of which it has all pixels, or all but those of the tiles that are traced.
     shares_with: Option<usize>,
     /// Tiles that are traced, when it shares pixels.
@@ -112,7 +121,7 @@ impl SceneStats {
             encode: Duration::ZERO,
             save: Duration::ZERO,
             counts: Counts::default(),
-            skipped: Savings::default(),
+            skipped: Skipped::default(),
             images: Vec::new(),
         }
     }
@@ -124,7 +133,8 @@ impl SceneStats {
             self.encode += report.encode_time;
             self.save += report.save_time;
             self.counts += report.counts;
-            self.skipped += report.savings;
+            self.skipped.planned += report.savings;
+            self.skipped.traced += report.spared;
             let (shares_with, traced_tiles) = shared(report.origin);
             self.images.push(ImageStats {
                 path: disk::shown(out_dir, &report.name).display().to_string(),
@@ -137,7 +147,7 @@ impl SceneStats {
                 save: report.save_time,
                 total: report.total_time,
                 counts: report.counts,
-                skipped: report.savings,
+                skipped: Skipped { planned: report.savings, traced: report.spared },
                 shares_with,
                 traced_tiles,
             });
@@ -162,6 +172,10 @@ impl SceneStats {
             reflected_rays,
             shadow_rays,
             tests,
+            reflected_tests: _,
+            shadow_tests,
+            lightings: _,
+            settled_rays: _,
             draft_pixels,
             settled_pixels,
             refined_pixels,
@@ -174,6 +188,7 @@ impl SceneStats {
             ("reflected rays", reflected_rays),
             ("shadow rays", shadow_rays),
             ("tests", tests),
+            ("shadow tests", shadow_tests),
             ("draft pixels", draft_pixels),
             ("settled pixels", settled_pixels),
             ("refined pixels", refined_pixels),
@@ -189,7 +204,7 @@ impl SceneStats {
 
     /// Adds what was left out, and where pixels came from.
     fn add_skipped(&self, table: &mut String) {
-        let skipped = &self.skipped;
+        let Skipped { planned: skipped, traced } = &self.skipped;
         let rows = [
             ("objects left out", skipped.objects_left_out),
             ("lights left out", skipped.lights_left_out),
@@ -198,10 +213,14 @@ impl SceneStats {
             ("tiles not visited", skipped.tiles_not_visited),
             ("eye rays not cast", skipped.eye_rays_not_cast),
             ("eye tests not made", skipped.eye_tests_not_made),
+            ("reflected rays not cast", traced.reflected_rays_not_cast),
+            ("reflected tests not made", traced.reflected_tests_not_made),
+            ("shadow rays not cast", traced.shadow_rays_not_cast),
+            ("shadow tests not made", traced.shadow_tests_not_made),
         ];
         let _ = writeln!(table, "skipped");
         for (what, count) in rows {
-            let _ = writeln!(table, "  {what:<18} {count:>14}");
+            let _ = writeln!(table, "  {what:<24} {count:>14}");
         }
         for image in &self.images {
             let path = &image.path;
