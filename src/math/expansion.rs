@@ -202,12 +202,27 @@ mod tests {
     fn the_square_of_a_sum_that_no_binary64_holds_is_exact() {
         let small = libm::ldexp(1.0, -60);
         let mut sum = Expansion::new();
-        assert!(sum.add_square(1.0, small, 1.0));
-        sum.add(-1.0);
-        sum.add(-2.0 * small);
-        assert_eq!(sum.compare_zero(), Ordering::Greater, "(1 + e)² is above 1 + 2e");
+        assert!(sum.add_square(3.0, small, 1.0));
+        sum.add(-9.0);
+        sum.add(-6.0 * small);
+        assert_eq!(sum.compare_zero(), Ordering::Greater, "(3 + e)² is above 9 + 6e");
         sum.add(-small * small);
         assert_eq!(sum.compare_zero(), Ordering::Equal);
+    }
+
+    #[test]
+    fn a_rounded_sum_holds_it() {
+        fn check<R: Real + std::fmt::Debug>() {
+            let mut sum = Expansion::new();
+            [3.0, libm::ldexp(-1.0, -60), libm::ldexp(1.0, -130)].into_iter().for_each(|term| sum.add(term));
+            let rounded: R = sum.rounded();
+            assert_eq!((rounded - R::exact(2.5)).sign(), Sign::Positive);
+            assert_eq!((rounded - R::exact(3.5)).sign(), Sign::Negative);
+            assert!(rounded.error() > 0.0 && rounded.error() < 1e-15, "{rounded:?}");
+            assert_eq!(Expansion::new().rounded::<R>().sign(), Sign::Zero);
+        }
+        check::<Ball64>();
+        check::<Ball106>();
     }
 
     /// A point of whole numbers and its distance from 0, whole too, by Lebesgue's identity; of `bits` + 4 bits at most.

@@ -94,3 +94,31 @@ impl Judge {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Ball64;
+
+    #[test]
+    fn a_floor_in_doubt_is_that_of_the_middle_where_ties_are_taken() {
+        // Three thirds may lie on either side of 1.
+        let third = Ball64::exact(1.0) / Ball64::exact(3.0);
+        let in_doubt = third + third + third;
+        for takes_ties in [false, true] {
+            let mut judge = Judge { takes_ties, ..Judge::default() };
+            assert_eq!(judge.floor(Ball64::exact(1.5)), Ok(1.0));
+            assert_eq!(judge.counts.ties, 0);
+            let expected = if takes_ties { Ok(in_doubt.value().floor()) } else { Err(Doubt) };
+            assert_eq!(judge.floor(in_doubt), expected);
+            assert_eq!(judge.counts.ties, u64::from(takes_ties));
+        }
+    }
+
+    #[test]
+    fn the_largest_bound_is_that_of_channels_that_were_rounded() {
+        let mut judge = Judge::default();
+        [1e-9, 1e-7, 0.5, 1e-8].into_iter().for_each(|error| judge.note_bound(error));
+        assert!((judge.counts.largest_bound - 1e-7).abs() < 1e-20);
+    }
+}

@@ -149,8 +149,11 @@ pub fn met_before(ray: &PlainRay, scene: &Scene<'_>, i: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::{Ball64, Ball106};
+    use crate::plan::{CylinderLanes, SphereLanes};
     use crate::testing::Stream;
     use crate::trace::kernels::{Backend, SingleJob};
+    use crate::trace::reject::tests::{blurred, passing_ray};
 
     struct Meet<'a>(&'a Boxes, &'a Beam);
 
@@ -184,6 +187,77 @@ mod tests {
             let expected = OneByOne::meet(&boxes, &beam);
             for backend in Backend::ALL.into_iter().filter(|backend| backend.is_available()) {
                 assert_eq!(backend.run_single(Meet(&boxes, &beam)), expected, "{}", backend.name());
+            }
+        }
+    }
+
+    #[test]
+    fn many_candidates_of_a_vague_ray_are_left_to_finer_arithmetic() {
+        let numbers: Vec<u32> = (0..=MANY as u32).collect();
+        let all = |n: usize| Candidates { spheres: &numbers[..n], cylinders: &[] };
+        assert!(unless_vague::<Ball64>(true, all(MANY + 1)).is_err());
+        for found in [
+            unless_vague::<Ball64>(true, all(MANY)),
+            unless_vague::<Ball64>(false, all(MANY + 1)),
+            unless_vague::<Ball106>(true, all(MANY + 1)),
+        ] {
+            assert!(found.is_ok_and(|found| found.len() >= MANY));
+        }
+    }
+
+    /// A sphere at 0 and a ray that passes it at `share` of the radius, `far` radii from where it starts.
+    fn passing(stream: &mut Stream, share: f64, far: f64) -> (f64, [[f64; 3]; 2]) {
+        let radius = libm::exp2(stream.between(-20.0, 20.0));
+        let [origin, dir] = passing_ray(stream, ([0.0; 3], radius), share, far, false);
+        let speed = libm::exp2(stream.between(-10.0, 10.0));
+        (radius, [origin, dir.map(|d| d * speed)])
+    }
+
+    /// Errors of a ray, of its direction so much less as it is far.
+    fn errors(stream: &mut Stream, radius: f64, dir: [f64; 3], far: f64) -> [f64; 3] {
+        let mut error =
+            |most: f64| if stream.below(4) == 0 { 0.0 } else { most * libm::exp2(stream.between(-30.0, -5.0)) };
+        let speed = dir.into_iter().map(f64::abs).fold(0.0, f64::max);
+        let (of_origin, of_dir) = (error(radius), error(speed / (1.0 + far)));
+        [of_origin, of_origin, of_dir]
+    }
+
+    fn ask(radius: f64, ray: &PlainRay) -> f64 {
+        let spheres = SphereLanes { x: vec![0.0], y: vec![0.0], z: vec![0.0], radius: vec![radius] };
+        met_before(ray, &Scene::of_shapes(spheres, CylinderLanes::default()), 0)
+    }
+
+    #[test]
+    fn what_the_true_ray_misses_is_met_before_no_end() {
+        let mut stream = Stream::new(13);
+        for _ in 0..100_000 {
+            let far = libm::exp2(stream.between(-10.0, 6.0));
+            let (radius, [origin, dir]) = passing(&mut stream, 1.0 + 1e-12, far);
+            // From behind it no ray leads back.
+            let dir = if stream.below(4) == 0 { dir.map(|d| -d) } else { dir };
+            let errors = errors(&mut stream, radius, dir, far);
+            let near = blurred(&mut stream, [origin, dir], errors);
+            assert_eq!(ask(radius, &near), f64::INFINITY, "{origin:?} {dir:?} seen as {near:?}: {radius}");
+        }
+    }
+
+    #[test]
+    fn what_the_true_ray_meets_it_meets_in_time() {
+        let mut stream = Stream::new(14);
+        let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        for _ in 0..100_000 {
+            let (share, far) = (0.9 * stream.unit(), libm::exp2(stream.between(-10.0, 6.0)));
+            let (radius, [origin, dir]) = passing(&mut stream, share, far);
+            let errors = errors(&mut stream, radius, dir, far);
+            let near = blurred(&mut stream, [origin, dir], errors);
+            let found = ask(radius, &near);
+            let (a, b) = (dot(dir, dir), -dot(origin, dir));
+            let root = (b * b - a * (dot(origin, origin) - radius * radius)).sqrt();
+            let first = if b > root { (b - root) / a } else { (b + root) / a };
+            assert!(found > first, "{found} {first} {origin:?} {dir:?} seen as {near:?}: {radius}");
+            if errors[0] < 1e-6 * radius && errors[2] * (1.0 + far) < 1e-6 * a.sqrt() && b > 1e-3 * radius * a.sqrt() {
+                let last = (b + radius * a.sqrt()) / a;
+                assert!(found < 1.01 * last, "{found} {last} {origin:?} {dir:?}: {radius}");
             }
         }
     }

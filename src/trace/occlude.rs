@@ -209,4 +209,111 @@ mod tests {
         }
         assert!(n_on > 500 && n_doubts < 2_000, "{n_on} lights on spheres, {n_doubts} doubts");
     }
+
+    /// A point, a light and a cylinder of whole numbers.
+    #[derive(Debug)]
+    struct CylinderCase {
+        point: [i64; 3],
+        light: [i64; 3],
+        center: [i64; 2],
+        radius: i64,
+        heights: [i64; 2],
+    }
+
+    impl CylinderCase {
+        fn random(stream: &mut Stream) -> Self {
+            let mut any = |n: usize| stream.below(n) as i64;
+            let [point, light] = [0; 2].map(|_| [0; 3].map(|_| any(13) - 6));
+            let bottom = any(9) - 5;
+            Self {
+                point,
+                light,
+                center: [any(7) - 3, any(7) - 3],
+                radius: 1 + any(6),
+                heights: [bottom, bottom + 1 + any(4)],
+            }
+        }
+
+        /// The power of a place with regard to the wall.
+        fn power(&self, [x, _, z]: [i64; 3]) -> i64 {
+            let offsets = [x - self.center[0], z - self.center[1]];
+            offsets.map(|offset| offset * offset).iter().sum::<i64>() - self.radius * self.radius
+        }
+
+        /// Tells on which side of the surface a place lies: `Less` inside.
+        fn side(&self, place: [i64; 3]) -> Ordering {
+            let ([bottom, top], y) = (self.heights, place[1]);
+            self.power(place).cmp(&0).max(bottom.cmp(&y)).max(y.cmp(&top))
+        }
+
+        /// Tells by whole numbers whether something is met with 0 < t < 1; `None` from the surface itself, and if it is only
+        /// touched.
+        fn is_occluded(&self) -> Option<bool> {
+            match self.side(self.point) {
+                // The inside is convex.
+                Ordering::Less => return Some(self.side(self.light).is_gt()),
+                Ordering::Equal => return None,
+                Ordering::Greater => {}
+            }
+            let dir: [i64; 3] = std::array::from_fn(|axis| self.light[axis] - self.point[axis]);
+            let y = self.point[1];
+            // Between the planes of the caps it is from `enter` to `leave`, in units of 1/n.
+            let n = dir[1].abs().max(1);
+            let to_planes = self.heights.map(|height| (height - y) * dir[1].signum());
+            let [enter, leave] = match dir[1] {
+                0 if self.heights.contains(&y) => return None,
+                0 if self.heights[0] < y && y < self.heights[1] => [0, 1],
+                0 => return Some(false),
+                _ => [to_planes[0].min(to_planes[1]).max(0), to_planes[0].max(to_planes[1]).min(n)],
+            };
+            if enter >= leave {
+                return Some(false);
+            }
+            // The least power on the way, by its sign: a·t² − 2b·t + p.
+            let a = dir[0] * dir[0] + dir[2] * dir[2];
+            let b = dir[0] * (self.center[0] - self.point[0]) + dir[2] * (self.center[1] - self.point[2]);
+            let p = self.power(self.point);
+            let at = |t: i64| a * t * t - 2 * b * t * n + p * n * n;
+            let least = if enter * a < b * n && b * n < leave * a { p * a - b * b } else { at(enter).min(at(leave)) };
+            (least != 0).then_some(least < 0)
+        }
+
+        /// Asks the tracer.
+        fn ask<R: Real>(&self) -> Result<bool, Doubt> {
+            let scaled = |number: i64| number as f64 / 8.0;
+            let [point, light] = [self.point, self.light].map(|v| DVec3::from_array(v.map(scaled)));
+            let cylinders = CylinderLanes {
+                x: vec![scaled(self.center[0])],
+                z: vec![scaled(self.center[1])],
+                radius: vec![scaled(self.radius)],
+                y_min: vec![scaled(self.heights[0])],
+                y_max: vec![scaled(self.heights[1])],
+            };
+            let scene = Scene::of_shapes(SphereLanes::default(), cylinders);
+            let origin = Vector::<R>::exact(point);
+            let ray = Ray { origin, dir: Vector::exact(light) - origin, aim: None, leaving: None, light: Some(light) };
+            cylinder_occludes(&mut Judge::default(), &scene, &ray, light, 0)
+        }
+    }
+
+    #[test]
+    fn cylinders_occlude_as_whole_numbers_say() {
+        let mut stream = Stream::new(19);
+        let (mut n_known, mut n_doubts) = (0, 0);
+        for _ in 0..200_000 {
+            let case = CylinderCase::random(&mut stream);
+            let Some(expected) = case.is_occluded().filter(|_| case.point != case.light) else { continue };
+            for answer in [case.ask::<Ball64>(), case.ask::<Ball106>()] {
+                match answer {
+                    Ok(answer) => assert_eq!(answer, expected, "{case:?}"),
+                    Err(Doubt) => {
+                        n_doubts += 1;
+                        assert!(case.side(case.light).is_ge() || case.side(case.point).is_lt(), "{case:?}");
+                    }
+                }
+                n_known += 1;
+            }
+        }
+        assert!(n_known > 200_000 && n_doubts < n_known / 50, "{n_known} {n_doubts}");
+    }
 }

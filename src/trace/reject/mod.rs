@@ -13,6 +13,8 @@
 
 mod cylinder;
 mod sphere;
+#[cfg(test)]
+pub(in crate::trace) mod tests;
 
 pub use cylinder::keep_cylinders;
 pub use sphere::keep_spheres;
@@ -86,96 +88,4 @@ fn leads_away(ray: &PlainRay, offsets: &Offsets, along: f64, distance_squared: f
         + 4.0 * (offsets.to_center + ray.origin_error) * ray.origin_error
         + UNDERFLOW;
     along < -4.0 * offsets.slack && distance_squared > radius * radius + distance_slack
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::plan::{CylinderLanes, SphereLanes};
-    use crate::testing::Stream;
-
-    fn vector(stream: &mut Stream) -> [f64; 3] {
-        [(); 3].map(|()| stream.between(-1.0, 1.0))
-    }
-
-    fn length(v: [f64; 3]) -> f64 {
-        v.into_iter().map(|c| c * c).sum::<f64>().sqrt()
-    }
-
-    fn ray(origin: [f64; 3], dir: [f64; 3], error: f64) -> PlainRay {
-        PlainRay { origin, dir, origin_error: error, origin_y_error: error, dir_error: error }
-    }
-
-    /// A ray that grazes a sphere: from `origin` past `center` at `share` of the radius, with all of it known to `error`.
-    fn grazing_ray(stream: &mut Stream, center: [f64; 3], radius: f64, share: f64, error: f64) -> PlainRay {
-        let aside = vector(stream);
-        let along = vector(stream);
-        // The part of `aside` across `along`, as long as the radius.
-        let dot: f64 = (0..3).map(|k| aside[k] * along[k]).sum::<f64>() / (length(along) * length(along));
-        let across: [f64; 3] = std::array::from_fn(|k| aside[k] - dot * along[k]);
-        let factor = share * radius / length(across);
-        let far = 1.0 + 50.0 * stream.unit();
-        let origin = std::array::from_fn(|k| center[k] + across[k] * factor - along[k] * far * radius);
-        ray(origin, along, error)
-    }
-
-    /// A hit that rounding hides must not be rejected: rays aimed a few roundings inside of the silhouette, at spheres of
-    /// all sizes far from the origin of coordinates, are kept.
-    #[test]
-    fn grazing_hits_are_kept() {
-        let mut stream = Stream::new(3);
-        for _ in 0..200_000 {
-            let radius = libm::exp2(stream.between(-30.0, 30.0));
-            let center = vector(&mut stream).map(|c| c * 100.0 * radius);
-            // The ray is off by the roundings of its making, at most this.
-            let error = 200.0 * radius * 8.0 * f64::EPSILON;
-            let ray = grazing_ray(&mut stream, center, radius, 1.0, error);
-            let [x, y, z] = center.map(|c| vec![c]);
-            let mut kept = Vec::new();
-            keep_spheres(&ray, &SphereLanes { x, y, z, radius: vec![radius] }, &[0], &mut kept);
-            assert_eq!(kept, [0], "{ray:?} {center:?} {radius}");
-        }
-    }
-
-    #[test]
-    fn clear_misses_are_rejected() {
-        let mut stream = Stream::new(5);
-        for _ in 0..10_000 {
-            let center = vector(&mut stream).map(|c| c * 100.0);
-            let ray = grazing_ray(&mut stream, center, 1.0, 1.0 + 1e-9, 1e-15);
-            let [x, y, z] = center.map(|c| vec![c]);
-            let mut kept = Vec::new();
-            keep_spheres(&ray, &SphereLanes { x, y, z, radius: vec![1.0] }, &[0], &mut kept);
-            assert!(kept.is_empty(), "{ray:?} {center:?}");
-        }
-    }
-
-    #[test]
-    fn what_lies_behind_is_rejected_and_what_surrounds_is_kept() {
-        let toward_minus_z = ray([0.0; 3], [0.1, 0.0, -1.0], 0.0);
-        let spheres = SphereLanes { x: vec![0.0; 2], y: vec![0.0; 2], z: vec![3.0, 3.0], radius: vec![1.0, 4.0] };
-        let mut kept = Vec::new();
-        keep_spheres(&toward_minus_z, &spheres, &[0, 1], &mut kept);
-        assert_eq!(kept, [1]);
-
-        let cylinders = CylinderLanes {
-            x: vec![0.0; 4],
-            z: vec![3.0, 3.0, -3.0, -3.0],
-            radius: vec![1.0, 4.0, 1.0, 1.0],
-            y_min: vec![-1.0, -1.0, -1.0, 0.5],
-            y_max: vec![1.0, 1.0, 1.0, 1.0],
-        };
-        kept.clear();
-        keep_cylinders(&ray([0.0; 3], [0.1, -0.1, -1.0], 0.0), &cylinders, &[0, 1, 2, 3], &mut kept);
-        assert_eq!(kept, [1, 2], "behind; around; ahead; ahead but above a ray that falls");
-    }
-
-    #[test]
-    fn a_ray_in_the_plane_of_a_cap_keeps_its_cylinder() {
-        let cylinders =
-            CylinderLanes { x: vec![0.0], z: vec![-3.0], radius: vec![1.0], y_min: vec![-1.0], y_max: vec![0.0] };
-        let mut kept = Vec::new();
-        keep_cylinders(&ray([0.0; 3], [0.0, 0.0, -1.0], 0.0), &cylinders, &[0], &mut kept);
-        assert_eq!(kept, [0]);
-    }
 }
