@@ -178,6 +178,12 @@ fn objects_that_nothing_meets_are_left_out() {
             &format!("{MATTE}sphere 0 0 -5 2\nsphere 0 0 -5 .5\n{MIRROR}sphere 1 0 -3 1\n"),
             &[(Sphere(1), Inside(Sphere(0)))],
         ),
+        // At the rim of a cylinder no order counts; within its wall the mirror comes to no rim.
+        (&format!("{MATTE}cylinder 2 0 -6 -1 1\nsphere 0 0 -6 .5\n{MIRROR}sphere 2 1 -6 1\n"), &[]),
+        (
+            &format!("{MATTE}cylinder 2 0 -6 -1 1\nsphere 0 0 -6 .5\n{MIRROR}sphere 0 1.5 -6 .75\n"),
+            &[(Sphere(0), Inside(Cylinder(0)))],
+        ),
         (
             &format!("{MIRROR}sphere 3 0 -5 1\n{MATTE}sphere 0 0 -5 2\nsphere 0 0 -5 .5\n"),
             &[(Sphere(2), Inside(Sphere(1)))],

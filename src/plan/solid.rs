@@ -182,3 +182,160 @@ fn touch_from_outside(one: &Solid, other: &Solid) -> bool {
         & sum.add_square(r, s, -1.0);
     is_exact && sum.compare_zero() != Ordering::Less
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::bodies::parts;
+    use crate::testing::Stream;
+
+    /// A point of whole numbers.
+    fn place(stream: &mut Stream) -> DVec3 {
+        DVec3::from_array([0; 3].map(|_| stream.below(13) as f64 - 6.0))
+    }
+
+    /// A solid of whole numbers.
+    fn solid(stream: &mut Stream) -> Solid {
+        let (DVec3 { x, y, z }, radius) = (place(stream), 1.0 + stream.below(6) as f64);
+        match stream.below(2) {
+            0 => Solid::Sphere { center: DVec3::new(x, y, z), radius },
+            _ => Solid::Cylinder { x, z, radius, y_min: y, y_max: y + 1.0 + stream.below(6) as f64 },
+        }
+    }
+
+    /// A solid that a point belongs to.
+    fn solid_at(stream: &mut Stream, point: DVec3) -> Solid {
+        loop {
+            let solid = solid(stream);
+            if side(&solid, point).is_le() {
+                return solid;
+            }
+        }
+    }
+
+    /// Tells on which side of the surface a point lies: `Less` inside. Nothing is rounded.
+    fn side(solid: &Solid, point: DVec3) -> Ordering {
+        match *solid {
+            Solid::Sphere { center, radius } => (point - center).length_squared().total_cmp(&(radius * radius)),
+            Solid::Cylinder { x, z, radius, y_min, y_max } => {
+                let across = (point.x - x) * (point.x - x) + (point.z - z) * (point.z - z);
+                across.total_cmp(&(radius * radius)).max(y_min.total_cmp(&point.y)).max(point.y.total_cmp(&y_max))
+            }
+        }
+    }
+
+    /// The centre and the radius of the smallest sphere around a solid.
+    fn around(solid: &Solid) -> (DVec3, f64) {
+        match *solid {
+            Solid::Sphere { center, radius } => (center, radius),
+            Solid::Cylinder { x, z, radius, y_min, y_max } => {
+                (DVec3::new(x, 0.5 * (y_min + y_max), z), radius.hypot(0.5 * (y_max - y_min)))
+            }
+        }
+    }
+
+    /// How far `inner` stays off the surface, in its inside; below 0 when it does not. About.
+    fn room(outer: &Solid, inner: &Solid) -> f64 {
+        let ((center, _), [[a, b], [c, d]]) = (around(inner), inner.heights());
+        let (bottom, top) = (a + b, c + d);
+        let (Solid::Sphere { radius: inner_radius, .. } | Solid::Cylinder { radius: inner_radius, .. }) = *inner;
+        match (*outer, inner) {
+            (Solid::Sphere { center: middle, radius }, Solid::Sphere { .. }) => {
+                radius - center.distance(middle) - inner_radius
+            }
+            (Solid::Sphere { center: middle, radius }, Solid::Cylinder { .. }) => {
+                let across = (center.x - middle.x).hypot(center.z - middle.z) + inner_radius;
+                radius - across.hypot((bottom - middle.y).abs().max((top - middle.y).abs()))
+            }
+            (Solid::Cylinder { x, z, radius, y_min, y_max }, _) => {
+                let across = (center.x - x).hypot(center.z - z) + inner_radius;
+                (radius - across).min(bottom - y_min).min(y_max - top)
+            }
+        }
+    }
+
+    #[test]
+    fn points_lie_where_whole_numbers_say() {
+        let mut stream = Stream::new(31);
+        for _ in 0..20_000 {
+            let (solid, point) = (solid(&mut stream), place(&mut stream));
+            let side = side(&solid, point);
+            assert_eq!((solid.holds(point), solid.excludes(point)), (side.is_lt(), side.is_gt()), "{solid:?} {point}");
+        }
+    }
+
+    /// Whole numbers do not come near to touching: they touch, or do not by far.
+    #[test]
+    fn solids_contain_what_stays_off_their_surface() {
+        let mut stream = Stream::new(32);
+        let mut n_contained = 0;
+        for _ in 0..50_000 {
+            let (outer, inner) = (solid(&mut stream), solid(&mut stream));
+            let expected = room(&outer, &inner) > 1e-9;
+            assert_eq!(outer.contains(&inner), expected, "{outer:?} {inner:?}");
+            n_contained += usize::from(expected);
+        }
+        assert!(n_contained > 200, "{n_contained}");
+    }
+
+    #[test]
+    fn what_shares_a_point_is_not_apart_and_what_is_far_off_is() {
+        let mut stream = Stream::new(33);
+        for _ in 0..20_000 {
+            let point = place(&mut stream);
+            let (one, other) = (solid_at(&mut stream, point), solid_at(&mut stream, point));
+            assert!(!one.is_clear_of(&other) && !are_apart(&one, &other), "{one:?} {other:?} share {point}");
+
+            let (one, other) = (solid(&mut stream), solid(&mut stream));
+            let ((a, r), (b, s)) = (around(&one), around(&other));
+            let gap = a.distance(b) - r - s;
+            assert!(gap.abs() < 1e-6 || one.is_clear_of(&other) == (gap > 0.0), "{one:?} {other:?}");
+            assert!(gap < 0.1 || are_apart(&one, &other), "{one:?} {other:?}");
+        }
+    }
+
+    /// The plane that plain numbers find between them is for its proof to refuse.
+    #[test]
+    fn what_overlaps_by_a_rounding_is_not_apart() {
+        let mut stream = Stream::new(36);
+        for _ in 0..20_000 {
+            let mut any = |size: f64| DVec3::from_array([0; 3].map(|_| stream.between(-size, size)));
+            // Coordinates are rounded by more than the spheres overlap.
+            let place = any(1000.0);
+            let (a, b) = (place + any(1.0), place + any(1.0));
+            let distance = a.distance(b);
+            let radius = distance * stream.unit();
+            let rest = distance - radius + 8.0 * f64::EPSILON * distance;
+            let [one, other] = [(a, radius), (b, rest)].map(|(center, radius)| Solid::Sphere { center, radius });
+            assert!(!one.is_clear_of(&other) && !are_apart(&one, &other), "{one:?} {other:?}");
+        }
+    }
+
+    #[test]
+    fn what_lies_on_a_segment_does_not_part_its_ends() {
+        let mut stream = Stream::new(34);
+        for _ in 0..20_000 {
+            let (start, between) = (place(&mut stream), place(&mut stream));
+            if start == between {
+                continue;
+            }
+            let (from, solid) = (solid_at(&mut stream, start), solid_at(&mut stream, between));
+            let end = between + (between - start);
+            // What only touches at its surface may be parted: a ball on the ground does not have the ground in its light.
+            if side(&solid, between).is_lt() {
+                assert!(!parts(&from, end, &solid), "{from:?} to {end}: {solid:?} holds {between}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_faces_toward_a_solid_are_those_toward_its_points() {
+        let mut stream = Stream::new(35);
+        for _ in 0..20_000 {
+            let point = place(&mut stream);
+            let (origin, solid) = (solid_at(&mut stream, point), solid(&mut stream));
+            let (of_point, of_all) = (solid.faces_toward(point), solid.faces_toward_solid(&origin));
+            assert_eq!(of_point.or(of_all), of_all, "{solid:?} from {point} of {origin:?}");
+        }
+    }
+}
