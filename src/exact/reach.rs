@@ -112,3 +112,86 @@ pub fn approximate_bound(t: &Real) -> f64 {
     let approx = t.to_f64();
     if approx.is_normal() && t.is_sharp_beside(t, SHARP_BITS) { approx } else { f64::INFINITY }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::Stream;
+
+    const SPHERE: &[usize] = &[0, 1, 2];
+    const WALL: &[usize] = &[0, 2];
+
+    /// A sphere or an endless cylinder of any size at any place.
+    fn reach(stream: &mut Stream) -> Reach {
+        let scale = libm::exp2(stream.between(-300.0, 300.0));
+        let center = [0; 3].map(|_| scale * stream.between(-1.0, 1.0));
+        let radius = scale * libm::exp2(stream.between(-3.0, 1.0));
+        Reach { center, radius, axes: [SPHERE, WALL][stream.below(2)] }
+    }
+
+    fn along(axes: &[usize], a: [f64; 3], b: [f64; 3]) -> f64 {
+        axes.iter().map(|&axis| a[axis] * b[axis]).sum()
+    }
+
+    /// A vector of length 1, along the axes that count.
+    fn unit(stream: &mut Stream, axes: &[usize]) -> [f64; 3] {
+        let mut v = [0.0; 3];
+        axes.iter().for_each(|&axis| v[axis] = stream.between(-1.0, 1.0));
+        let length = along(axes, v, v).sqrt();
+        v.map(|c| c / length)
+    }
+
+    /// A ray that passes the centre at `share` of the radius, `far` radii from where it starts; and the t at which it does.
+    fn passing(stream: &mut Stream, reach: &Reach, share: f64, far: f64) -> (ApproxRay, f64) {
+        let dir = unit(stream, reach.axes);
+        let aside = unit(stream, reach.axes);
+        let dot = along(reach.axes, aside, dir);
+        let across: [f64; 3] = std::array::from_fn(|k| aside[k] - dot * dir[k]);
+        let length = along(reach.axes, across, across).sqrt();
+        let Reach { center, radius, .. } = *reach;
+        let origin = std::array::from_fn(|k| center[k] + radius * (share * across[k] / length - far * dir[k]));
+        let speed = libm::exp2(stream.between(-300.0, 300.0));
+        let dir = dir.map(|d| d * speed);
+        (ApproxRay { origin, dir, origin_unit: largest(origin), dir_unit: largest(dir) }, far * radius / speed)
+    }
+
+    #[test]
+    fn points_on_a_surface_are_not_off_and_others_are() {
+        let mut stream = Stream::new(41);
+        for _ in 0..50_000 {
+            let reach = reach(&mut stream);
+            let way = unit(&mut stream, reach.axes);
+            let at = |share: f64| std::array::from_fn(|k| reach.center[k] + share * reach.radius * way[k]);
+            assert!(!reach.is_surely_off(at(1.0)), "{reach:?} {way:?}");
+            assert!(reach.is_surely_off(at(1.1)) && reach.is_surely_off(at(0.9)), "{reach:?} {way:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_met_is_not_left_out_and_what_is_clearly_missed_is() {
+        let mut stream = Stream::new(42);
+        let infinity = f64::INFINITY;
+        for _ in 0..50_000 {
+            let (reach, far) = (reach(&mut stream), stream.between(-0.5, 8.0));
+            let (touching, t) = passing(&mut stream, &reach, 1.0, far.abs());
+            for t_max in [infinity, t] {
+                assert!(!reach.is_surely_missed(&touching, t_max), "{reach:?} {touching:?} {t}");
+            }
+            let share = stream.unit();
+            let (meeting, t) = passing(&mut stream, &reach, share, far);
+            // The far root is ahead.
+            let half = (1.0 - share * share).sqrt();
+            let root = t + half * t / far;
+            if far + half > 0.0 {
+                assert!(!reach.is_surely_missed(&meeting, infinity), "{reach:?} {meeting:?}");
+                assert!(!reach.is_surely_missed(&meeting, root), "{reach:?} {meeting:?} {root}");
+            }
+            let (beside, _) = passing(&mut stream, &reach, 1.5, far);
+            assert!(reach.is_surely_missed(&beside, infinity), "{reach:?} {beside:?}");
+            let (behind, _) = passing(&mut stream, &reach, share, -1.5);
+            assert!(reach.is_surely_missed(&behind, infinity), "{reach:?} {behind:?}");
+            let (ahead, t) = passing(&mut stream, &reach, share, 8.0);
+            assert!(reach.is_surely_missed(&ahead, 0.5 * t), "{reach:?} {ahead:?}");
+        }
+    }
+}
