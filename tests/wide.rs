@@ -139,9 +139,10 @@ fn cluster(stream: &mut Stream) -> String {
 fn packets_give_the_settled_pixels_of_clusters() {
     let mut stream = Stream::new(41);
     let mut failures = Vec::new();
-    for _ in 0..24 {
+    for (max_level, samples) in [(8, 1), (0, 1), (1, 2), (2, 1), (8, 2), (5, 1), (12, 1)].repeat(6) {
         let text = cluster(&mut stream);
-        let found = differences("a cluster", last_view(&compile(&text)), &sized(80, 60));
+        let settings = Settings { max_level, samples, ..sized(80, 60) };
+        let found = differences("a cluster", last_view(&compile(&text)), &settings);
         if !found.is_empty() {
             failures.extend(found);
             failures.push(text);

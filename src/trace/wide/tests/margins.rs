@@ -27,6 +27,8 @@ struct Family {
     has_shell: bool,
     /// Whether the spheres are of one size, and touch.
     is_lattice: bool,
+    /// Whether all surfaces and lights are grey.
+    is_grey: bool,
     samples: u32,
     /// At least this share of the pixels is decided.
     decided: f64,
@@ -45,6 +47,7 @@ const PLAIN: Family = Family {
     is_specular: false,
     has_shell: false,
     is_lattice: false,
+    is_grey: false,
     samples: 1,
     decided: 0.69,
 };
@@ -90,6 +93,36 @@ const FAMILIES: &[Family] = &[
     Family { name: "samples", decided: 0.55, samples: 2, mirrors: 0.3, n_lights: 1, is_diffuse: true, ..PLAIN },
 ];
 
+/// Grey lattices: packets go among their mirrors as flocks.
+const FLOCKS: &[Family] = &[
+    Family {
+        name: "flock",
+        decided: 0.84,
+        mirrors: 1.0,
+        is_lattice: true,
+        is_grey: true,
+        cylinders: 0.0,
+        n_lights: 1,
+        is_diffuse: true,
+        ..PLAIN
+    },
+    Family {
+        name: "dark flock",
+        decided: 0.82,
+        mirrors: 1.0,
+        is_lattice: true,
+        is_grey: true,
+        cylinders: 0.0,
+        ..PLAIN
+    },
+];
+
+/// Cylinders in cylinders: mirrors show walls, caps and rims, and where they cut each other.
+const CYLINDERS: &[Family] = &[
+    Family { name: "mirrored cylinders", decided: 0.42, cylinders: 1.0, mirrors: 1.0, n_objects: 20, ..PLAIN },
+    Family { name: "lit cylinders", decided: 0.41, cylinders: 1.0, n_lights: 2, is_diffuse: true, ..PLAIN },
+];
+
 /// Rounds to a multiple of 2⁻¹⁰: what coarse lanes hold exactly.
 fn short(number: f64) -> f64 {
     (number * 1024.0).round() / 1024.0
@@ -111,7 +144,7 @@ impl Family {
             color(self.is_diffuse, 0.8),
             color(self.is_specular, 0.6),
         );
-        let is_grey = stream.unit() < 0.5;
+        let is_grey = self.is_grey || stream.unit() < 0.5;
         let [ambient, diffuse, specular] =
             [ambient, diffuse, specular].map(|color| if is_grey { DVec3::splat(color.x) } else { color });
         let exponents = [0.0, 0.5, 1.0, 2.0, 3.0, 7.5, 20.0, 60.0];
@@ -128,6 +161,7 @@ impl Family {
         }
         for _ in 0..self.n_lights {
             let (color, position) = (short_vector(stream, 0.1, 0.9), short_vector(stream, -12.0, 12.0));
+            let color = if self.is_grey { DVec3::splat(color.x) } else { color };
             program.lights.push(ir::Light { color, position });
         }
         for _ in 0..self.n_objects {
@@ -142,7 +176,9 @@ impl Family {
             } else if self.is_lattice {
                 // Where places are taken twice, one copy stays.
                 let [i, j, k] = [(); 3].map(|()| stream.below(3) as f64);
-                let center = DVec3::new(2.0 * i - 2.0, 2.0 * j - 2.0, -5.0 - 2.0 * k);
+                // Flocks set out from near spheres alone: errors of points grow with the distance.
+                let nearest = if self.is_grey { 2.5 } else { 5.0 };
+                let center = DVec3::new(2.0 * i - 2.0, 2.0 * j - 2.0, -nearest - 2.0 * k);
                 if program.spheres.as_slice().iter().all(|sphere| sphere.center != center) {
                     program.spheres.push(ir::Sphere { center, radius: 1.0, surface, order });
                 }
@@ -259,7 +295,12 @@ fn audit(tally: &mut Tally, family: &Family, stream: &mut Stream, n_tiles: usize
     let Some(wide) = Wide::new(&plan, truth.camera.step(), Backend::Coarse) else { return };
     let mut scratch = wide.scratch(true);
     for _ in 0..n_tiles {
-        let (column, row) = on_an_edge(&mut truth, side, stream);
+        // At an edge flocks part; elsewhere they are followed far.
+        let (column, row) = if family.is_grey && stream.below(2) == 0 {
+            (stream.below(side as usize) as u32, stream.below(side as usize) as u32)
+        } else {
+            on_an_edge(&mut truth, side, stream)
+        };
         let rect = Wide::tiles(&plan, row / 16 * 16..row / 16 * 16 + 16)
             .find(|rect| rect.columns.contains(&column) && rect.rows.contains(&row))
             .expect("a tile");
@@ -321,22 +362,34 @@ fn audit_tile(
 }
 
 /// Audits some images of each family.
-fn audit_all(n_images: usize, wrongness: Wrongness) -> Vec<Tally> {
+fn audit_all(n_images: usize, wrongness: Wrongness) -> Vec<(&'static Family, Tally)> {
+    [FAMILIES, FLOCKS, CYLINDERS]
+        .into_iter()
+        .flat_map(|families| audit_families(families, n_images, wrongness))
+        .collect()
+}
+
+fn audit_families(
+    families: &'static [Family],
+    n_images: usize,
+    wrongness: Wrongness,
+) -> impl Iterator<Item = (&'static Family, Tally)> {
     let audit_one = |place: usize| {
         coarse::be_wrong(wrongness);
         let mut tally = Tally::default();
-        audit(&mut tally, &FAMILIES[place % FAMILIES.len()], &mut Stream::new(place as u64), 4);
+        audit(&mut tally, &families[place % families.len()], &mut Stream::new(place as u64), 4);
         tally
     };
-    let each: Vec<_> = (0..n_images * FAMILIES.len()).into_par_iter().map(audit_one).collect();
-    let of_family = |i: usize| each.iter().skip(i).step_by(FAMILIES.len()).copied().fold(Tally::default(), Tally::plus);
-    (0..FAMILIES.len()).map(of_family).collect()
+    let each: Vec<_> = (0..n_images * families.len()).into_par_iter().map(audit_one).collect();
+    let of_family =
+        move |i: usize| each.iter().skip(i).step_by(families.len()).copied().fold(Tally::default(), Tally::plus);
+    families.iter().enumerate().map(move |(i, family)| (family, of_family(i)))
 }
 
 #[test]
 fn lanes_as_wrong_as_they_may_be_decide_no_pixel_wrongly() {
     for way in [Way::Mixed, Way::Up, Way::Down] {
-        for (family, tally) in FAMILIES.iter().zip(audit_all(6, Wrongness { excess: 1.0, way })) {
+        for (family, tally) in audit_all(6, Wrongness { excess: 1.0, way }) {
             assert!(tally.n_wrong + tally.n_beyond == 0, "{}, {way:?}: {tally:?}", family.name);
         }
     }
@@ -346,16 +399,19 @@ fn lanes_as_wrong_as_they_may_be_decide_no_pixel_wrongly() {
 /// even if nothing is wrong yet, and so is one that makes them larger.
 #[test]
 fn the_bounds_leave_room_and_are_not_idle() {
-    for (family, tally) in FAMILIES.iter().zip(audit_all(24, Wrongness { excess: ROOM, way: Way::Mixed })) {
-        assert!(tally.n_wrong + tally.n_beyond == 0, "{}: {tally:?}", family.name);
+    let mut failures = Vec::new();
+    for (family, tally) in audit_all(24, Wrongness { excess: ROOM, way: Way::Mixed }) {
         let share = tally.n_decided as f64 / tally.n_pixels as f64;
-        assert!(share > family.decided, "{}: only {share:.3} of the pixels", family.name);
+        if tally.n_wrong + tally.n_beyond > 0 || share <= family.decided {
+            failures.push(format!("{}, {share:.3} of the pixels: {tally:?}", family.name));
+        }
     }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
 
 #[test]
 fn lanes_that_are_worse_than_that_are_found_out() {
-    for (family, tally) in FAMILIES.iter().zip(audit_all(16, Wrongness { excess: 6.0 * ROOM, way: Way::Mixed })) {
+    for (family, tally) in audit_all(16, Wrongness { excess: 6.0 * ROOM, way: Way::Mixed }) {
         assert!(tally.n_wrong > 0, "{}: {tally:?}", family.name);
     }
 }
