@@ -133,58 +133,120 @@ fn hash(key: &impl Hash) -> u64 {
 const MANY: usize = 1 << 12;
 
 /// Returns the items that may have the same key as another, in order: all whose hash marks a bit that another marks.
+///
+/// The set of bits is larger than any cache. So the items are sorted by parts of it first, and the bits of one part after
+/// the other are marked and looked at where they are at hand.
 fn find_suspects<T: Sync>(items: &[T], hash: impl Fn(&T) -> u64 + Sync) -> Vec<u32> {
     if items.len() < MANY {
         return (0..items.len() as u32).collect();
     }
-    let n_bits = (items.len() * Sieve::BITS_PER_ITEM).next_power_of_two().min(1 << u32::BITS);
-    let shift = u64::BITS - n_bits.trailing_zeros();
-    // The items are much larger than these, and all that follows needs no more of them.
-    let bit_idxs: Vec<u32> = items.par_iter().map(|item| (hash(item) >> shift) as u32).collect();
-    let sieve = Sieve::mark(n_bits, &bit_idxs);
-    let indexed = bit_idxs.par_iter().enumerate();
-    indexed.filter(|&(_, &bit_idx)| sieve.is_marked_twice(bit_idx)).map(|(i, _)| i as u32).collect()
+    let sieve = Sieve::of(items.len());
+    let sorted: Vec<_> = (items.par_chunks(ITEMS_PER_TASK).enumerate())
+        .map(|(i, items)| sieve.sort(items.iter().map(&hash), (i * ITEMS_PER_TASK) as u32))
+        .collect();
+    let parts = (0..sieve.n_parts()).into_par_iter();
+    let found =
+        parts.map_init(|| sieve.part(), |part, i| part.find_marked_twice(sorted.iter().map(|marks| marks.of(i))));
+    let mut suspects = found.collect::<Vec<_>>().concat();
+    suspects.par_sort_unstable();
+    suspects
 }
 
-/// A set of bits that knows which of them were marked twice. It is cut into parts, a thread for each: threads that share
-/// one spend more time on taking its bits from each other than on marking them.
+/// Items that a thread sorts at a time.
+const ITEMS_PER_TASK: usize = 1 << 15;
+
+/// A set of bits, cut into parts.
+#[derive(Clone, Copy)]
 struct Sieve {
-    /// For each part its words: the bits marked at least once, and those marked at least twice.
-    parts: Vec<Vec<[u64; 2]>>,
-    /// The number of words of a part is 2 to this.
+    /// The number of bits is 2 to this.
+    bits_log: u32,
+    /// The number of bits of a part is 2 to this.
     part_log: u32,
 }
 
+/// An item that marks a bit of a part.
+#[derive(Clone, Copy, Default)]
+struct Mark {
+    bit_idx: u32,
+    item: u32,
+}
+
 impl Sieve {
-    /// Bits for each item: with sixteen, no more than one item in sixteen meets another by chance.
-    const BITS_PER_ITEM: usize = 16;
+    /// Bits for each item: hardly more than one item in a hundred meets another by chance.
+    const BITS_PER_ITEM: usize = 64;
 
-    /// The most parts: each has to look at all items, so that more parts soon save nothing.
-    const MAX_PARTS: usize = 4;
+    /// A part takes 256 KiB, a share of the cache of a core.
+    const MAX_PART_LOG: u32 = 20;
 
-    /// Marks bits of a set of `n_bits`, a power of two.
-    fn mark(n_bits: usize, bit_idxs: &[u32]) -> Self {
-        let parts_log = rayon::current_num_threads().min(Self::MAX_PARTS).ilog2();
-        let part_log = (n_bits / 64).ilog2() - parts_log;
-        let mark_part = |part_idx: usize| {
-            let mut words = vec![[0; 2]; 1 << part_log];
-            for &bit_idx in bit_idxs {
-                let (word_idx, bit) = place(bit_idx);
-                if word_idx >> part_log == part_idx {
-                    let [once, twice] = &mut words[word_idx & ((1 << part_log) - 1)];
-                    *twice |= *once & bit;
-                    *once |= bit;
-                }
-            }
-            words
-        };
-        Self { parts: (0..1 << parts_log).into_par_iter().map(mark_part).collect(), part_log }
+    fn of(n_items: usize) -> Self {
+        let bits_log = (n_items * Self::BITS_PER_ITEM).next_power_of_two().ilog2().min(u32::BITS);
+        Self { bits_log, part_log: bits_log.min(Self::MAX_PART_LOG) }
     }
 
-    fn is_marked_twice(&self, bit_idx: u32) -> bool {
-        let (word_idx, bit) = place(bit_idx);
-        let [_, twice] = self.parts[word_idx >> self.part_log][word_idx & ((1 << self.part_log) - 1)];
-        twice & bit != 0
+    fn n_parts(self) -> usize {
+        1 << (self.bits_log - self.part_log)
+    }
+
+    /// Returns a part without marks.
+    fn part(self) -> Part {
+        Part { words: vec![[0; 2]; (1 << self.part_log) / 64] }
+    }
+
+    /// Sorts items, the `first` and those behind it, by the parts in which they mark a bit.
+    fn sort(self, hashes: impl Iterator<Item = u64> + Clone, first: u32) -> Marks {
+        let part_and_bit = |hash: u64| {
+            let bit_idx = hash >> (u64::BITS - self.bits_log);
+            ((bit_idx >> self.part_log) as usize, (bit_idx & ((1 << self.part_log) - 1)) as u32)
+        };
+        let mut ends = vec![0; self.n_parts() + 1];
+        hashes.clone().for_each(|hash| ends[part_and_bit(hash).0 + 1] += 1);
+        (1..ends.len()).for_each(|i| ends[i] += ends[i - 1]);
+        let mut marks = vec![Mark::default(); ends[self.n_parts()] as usize];
+        for (hash, item) in hashes.zip(first..) {
+            let (part, bit_idx) = part_and_bit(hash);
+            marks[ends[part] as usize] = Mark { bit_idx, item };
+            ends[part] += 1;
+        }
+        // Each start has come to the end of its part.
+        ends.pop();
+        Marks { ends, marks }
+    }
+}
+
+/// Marks, sorted by the parts that they are in.
+struct Marks {
+    ends: Vec<u32>,
+    marks: Vec<Mark>,
+}
+
+impl Marks {
+    /// Returns the marks in a part.
+    fn of(&self, part: usize) -> &[Mark] {
+        let start = part.checked_sub(1).map_or(0, |before| self.ends[before] as usize);
+        &self.marks[start..self.ends[part] as usize]
+    }
+}
+
+/// A part of the set: its bits marked at least once, and those marked at least twice.
+struct Part {
+    words: Vec<[u64; 2]>,
+}
+
+impl Part {
+    /// Marks bits, and returns the items whose bit is marked twice.
+    fn find_marked_twice<'m>(&mut self, marks: impl Iterator<Item = &'m [Mark]> + Clone) -> Vec<u32> {
+        self.words.fill([0; 2]);
+        for mark in marks.clone().flatten() {
+            let (word_idx, bit) = place(mark.bit_idx);
+            let [once, twice] = &mut self.words[word_idx];
+            *twice |= *once & bit;
+            *once |= bit;
+        }
+        let is_twice = |mark: &&Mark| {
+            let (word_idx, bit) = place(mark.bit_idx);
+            self.words[word_idx][1] & bit != 0
+        };
+        marks.flatten().filter(is_twice).map(|mark| mark.item).collect()
     }
 }
 
@@ -210,8 +272,8 @@ mod tests {
 
     #[test]
     fn sieved_ids_are_those_of_one_table() {
-        // Few copies and many, of near items and far, on both sides of the sieve.
-        for n in [0, 1, 100, MANY - 1, MANY, 5 * MANY + 3] {
+        // Few copies and many, of near items and far, on both sides of the sieve, and for several threads.
+        for n in [0, 1, 100, MANY - 1, MANY, 9 * MANY + 3] {
             for n_keys in [1, 2, n / 7 + 1, n + 1, 50 * n + 1] {
                 let mix = |i: u64| i.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 11;
                 let keys: Vec<u64> = (0..n as u64).map(|i| mix(mix(i) % n_keys as u64)).collect();
