@@ -10,8 +10,8 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use crate::math::tan_half_degrees;
-use crate::plan::apex::{Bins, Cells, Outline};
-use crate::plan::{Candidates, Pass, SampleAt, Scene, Settings, Size};
+use crate::plan::apex::{BLOCK, Bins, Cells, Outline, Outlines, rounded_down};
+use crate::plan::{Candidates, Pass, SampleAt, Scene, Settings, Size, SphereLanes};
 
 /// No tile has more than 2⁶ columns or rows, however far its list reaches.
 const MAX_SHIFT: u32 = 6;
@@ -40,7 +40,8 @@ impl Tiles {
             true => blocks_of_pixels(scene, fov_deg, settings),
             false => {
                 let all = Cells { columns: [0, last_of(size.width())], rows: [0, last_of(size.height())], near: 0.0 };
-                [&scene.spheres.radius, &scene.cylinders.radius].map(|radii| vec![all; radii.len()])
+                let all = |radii: &[f64]| (0..radii.len() as u32).map(|i| (i, all)).collect();
+                [all(&scene.spheres.radius), all(&scene.cylinders.radius)]
             }
         };
         let shape = match settings.passes.contains(Pass::Tiles) {
@@ -48,7 +49,7 @@ impl Tiles {
             false => Shape { shifts: Shape::LADDER[0] },
         };
         let grid = shape.grid(size);
-        let bins = |blocks: &[Cells]| Bins::new(blocks.len(), grid, |i| blocks[i].coarser(shape.shifts));
+        let bins = |blocks: &[Block]| Bins::new(blocks, grid, |cells| cells.coarser(shape.shifts));
         Self { size, shape, n_columns: grid[0] as usize, spheres: bins(&spheres), cylinders: bins(&cylinders) }
     }
 
@@ -105,7 +106,7 @@ impl Shape {
     ///
     /// A block of w×h pixels meets (w/W + 1)·(h/H + 1) tiles of W×H pixels at a random place: sums over 1, w, h and w·h
     /// give the length of all lists.
-    fn for_blocks(size: Size, kinds: [&[Cells]; 2]) -> Self {
+    fn for_blocks(size: Size, kinds: [&[Block]; 2]) -> Self {
         let [n, w, h, area] = add(extents(kinds[0]), extents(kinds[1])).map(|sum| sum as f64);
         let listings = |[columns, rows]: [f64; 2]| area / (columns * rows) + w / columns + h / rows + n;
         let n_tiles = |shape: &Self| shape.grid(size).map(f64::from).iter().product::<f64>();
@@ -133,13 +134,11 @@ impl Shape {
 }
 
 /// Returns how many blocks there are, and the sums of their widths, heights and areas in pixels.
-fn extents(blocks: &[Cells]) -> [u64; 4] {
+fn extents(blocks: &[Block]) -> [u64; 4] {
     let extent = |[first, last]: [u16; 2]| u64::from(last - first) + 1;
-    let sum = |blocks: &[Cells]| {
-        let blocks = blocks.iter().filter(|block| !block.is_none());
-        blocks
-            .map(|block| [extent(block.columns), extent(block.rows)])
-            .fold([0; 4], |sums, [w, h]| add(sums, [1, w, h, w * h]))
+    let sum = |blocks: &[Block]| {
+        let extents = blocks.iter().map(|(_, cells)| [extent(cells.columns), extent(cells.rows)]);
+        extents.fold([0; 4], |sums, [w, h]| add(sums, [1, w, h, w * h]))
     };
     blocks.par_chunks(1 << 16).map(sum).reduce(|| [0; 4], add)
 }
@@ -148,25 +147,35 @@ fn add(a: [u64; 4], b: [u64; 4]) -> [u64; 4] {
     std::array::from_fn(|k| a[k] + b[k])
 }
 
-/// Returns for each sphere and each cylinder the block of pixels that have a sample on or in its outline.
-fn blocks_of_pixels(scene: &Scene<'_>, fov_deg: f64, settings: &Settings) -> [Vec<Cells>; 2] {
+/// An object by its index among those of its kind, and the block of pixels that have a sample on or in its outline.
+type Block = (u32, Cells);
+
+/// Returns the spheres, and the cylinders, in whose outlines there are samples.
+fn blocks_of_pixels(scene: &Scene<'_>, fov_deg: f64, settings: &Settings) -> [Vec<Block>; 2] {
     let view = View::new(fov_deg, settings);
-    let block = |outline: Option<Outline>| outline.map_or(Cells::NONE, |outline| view.block(&outline));
-    let spheres = &scene.spheres;
-    let sphere = |i: usize| Outline::of_sphere([spheres.x[i], spheres.y[i], -spheres.z[i]], spheres.radius[i]);
     let cylinders = &scene.cylinders;
-    let cylinder = |i: usize| {
+    let add_cylinder = |i: usize, blocks: &mut Vec<Block>| {
         let heights = [cylinders.y_min[i], cylinders.y_max[i]];
-        Outline::of_upright_cylinder([cylinders.x[i], -cylinders.z[i]], cylinders.radius[i], heights)
+        let outline = Outline::of_upright_cylinder([cylinders.x[i], -cylinders.z[i]], cylinders.radius[i], heights);
+        view.add(i, outline, blocks);
     };
-    [collect(spheres.radius.len(), |i| block(sphere(i))), collect(cylinders.radius.len(), |i| block(cylinder(i)))]
+    let add_cylinders = |range: Range<usize>, blocks: &mut _| range.for_each(|i| add_cylinder(i, blocks));
+    let add_spheres = |range: Range<usize>, blocks: &mut _| view.add_spheres(&scene.spheres, range, blocks);
+    [collect(scene.spheres.radius.len(), add_spheres), collect(cylinders.radius.len(), add_cylinders)]
 }
 
 /// Objects a thread takes at a time.
 const OBJECTS_PER_TASK: usize = 4096;
 
-fn collect(n_objects: usize, block: impl Fn(usize) -> Cells + Send + Sync) -> Vec<Cells> {
-    (0..n_objects).into_par_iter().with_min_len(OBJECTS_PER_TASK).map(block).collect()
+/// Calls `add` with all objects, some at a time, and returns what is added in their order.
+fn collect(n_objects: usize, add: impl Fn(Range<usize>, &mut Vec<Block>) + Send + Sync) -> Vec<Block> {
+    let some = |first: usize| {
+        let mut blocks = Vec::new();
+        add(first..n_objects.min(first + OBJECTS_PER_TASK), &mut blocks);
+        blocks
+    };
+    let pieces: Vec<_> = (0..n_objects).into_par_iter().step_by(OBJECTS_PER_TASK).map(some).collect();
+    pieces.concat()
 }
 
 /// What pixels the slopes of eye rays belong to.
@@ -183,13 +192,37 @@ impl View {
         Self { columns: Axis::new(width, per_slope, settings), rows: Axis::new(height, per_slope, settings) }
     }
 
-    /// Returns the pixels with a sample on or in an outline.
-    fn block(&self, outline: &Outline) -> Cells {
+    /// Returns the pixels with a sample on or in an outline, if there are some.
+    #[inline]
+    fn block(&self, outline: &Outline) -> Option<Cells> {
         let [across, [low, high]] = outline.slopes;
+        let columns = self.columns.pixels(across)?;
         // Rows are counted downward.
-        match (self.columns.pixels(across), self.rows.pixels([-high, -low])) {
-            (Some(columns), Some(rows)) => Cells { columns, rows, near: rounded_down(outline.near) },
-            _ => Cells::NONE,
+        let rows = self.rows.pixels([-high, -low])?;
+        Some(Cells { columns, rows, near: rounded_down(outline.near).max(0.0) })
+    }
+
+    /// Adds an object of this outline.
+    #[inline]
+    fn add(&self, i: usize, outline: Option<Outline>, blocks: &mut Vec<Block>) {
+        blocks.extend(outline.and_then(|outline| self.block(&outline)).map(|cells| (i as u32, cells)));
+    }
+
+    /// Adds some spheres, side by side as far as that goes.
+    fn add_spheres(&self, spheres: &SphereLanes, range: Range<usize>, blocks: &mut Vec<Block>) {
+        let SphereLanes { x, y, z, radius } = spheres;
+        let [x, y, z, radius] = [x, y, z, radius].map(|lane| lane[range.clone()].as_chunks::<BLOCK>());
+        let alone = |[x, y, z]: [f64; 3], radius| Outline::of_sphere([x, y, -z], radius);
+        for (k, (((x, y), z), radius)) in x.0.iter().zip(y.0).zip(z.0).zip(radius.0).enumerate() {
+            let outlines = Outlines::of_spheres([x, y, &z.map(|z| -z)], radius);
+            for i in 0..BLOCK {
+                let outline = outlines.get(i).or_else(|| alone([x[i], y[i], z[i]], radius[i]));
+                self.add(range.start + k * BLOCK + i, outline, blocks);
+            }
+        }
+        let first = range.end - radius.1.len();
+        for i in 0..radius.1.len() {
+            self.add(first + i, alone([x.1[i], y.1[i], z.1[i]], radius.1[i]), blocks);
         }
     }
 }
@@ -227,13 +260,15 @@ impl Axis {
             let offset = slope * self.per_slope;
             0.5 * n_pixels + offset + outward * (8.0 * f64::EPSILON) * (offset.abs() + n_pixels + 1.0)
         };
-        let first = (place(low, -1.0) - self.samples[1]).ceil();
-        let last = (place(high, 1.0) - self.samples[0]).floor();
-        if first >= n_pixels || last < 0.0 {
+        let end = f64::from(self.n_pixels - 1);
+        let (first, last) = (place(low, -1.0) - self.samples[1], place(high, 1.0) - self.samples[0]);
+        if first > end || last < 0.0 {
             return None;
         }
-        let first = if first > 0.0 { first as u16 } else { 0 };
-        let last = if last < n_pixels { last as u16 } else { last_of(self.n_pixels) };
+        // Whole numbers by conversion: without SSE4 `ceil` and `floor` are calls.
+        let below = first.max(0.0) as u16;
+        let first = below + u16::from(f64::from(below) < first);
+        let last = if last < end { last as u16 } else { last_of(self.n_pixels) };
         (first <= last).then_some([first, last])
     }
 }
@@ -241,12 +276,6 @@ impl Axis {
 /// Returns the last of so many pixels, of which there is one at least.
 fn last_of(n_pixels: u32) -> u16 {
     (n_pixels - 1) as u16
-}
-
-/// Returns a binary32 number that is not above a number that is not negative.
-fn rounded_down(number: f64) -> f32 {
-    let rounded = number as f32;
-    if f64::from(rounded) > number { rounded.next_down() } else { rounded }
 }
 
 #[cfg(test)]
@@ -292,13 +321,11 @@ mod tests {
         Sample { pixel, slopes }
     }
 
-    fn assert_holds(cells: &Cells, sample: &Sample, what: &str) {
+    fn assert_holds(blocks: &[Block], sample: &Sample, what: &str) {
+        let [(0, cells)] = blocks else { panic!("{what}: {blocks:?}") };
         let [column, row] = sample.pixel.map(|i| i as u16);
         let holds = |[first, last]: [u16; 2], i: u16| first <= i && i <= last;
-        assert!(
-            !cells.is_none() && holds(cells.columns, column) && holds(cells.rows, row),
-            "{what}: {cells:?} {row} {column}"
-        );
+        assert!(holds(cells.columns, column) && holds(cells.rows, row), "{what}: {cells:?} {row} {column}");
     }
 
     /// The silhouette of the sphere runs through the sample, inside of it by a few roundings.
@@ -327,7 +354,7 @@ mod tests {
             let mut scene = Scene::of_shapes(SphereLanes::default(), CylinderLanes::default());
             scene.spheres = SphereLanes { x: vec![x], y: vec![y], z: vec![-z], radius: vec![radius] };
             let [spheres, _] = blocks_of_pixels(&scene, fov_deg, &settings);
-            assert_holds(&spheres[0], &sample, "sphere");
+            assert_holds(&spheres, &sample, "sphere");
         }
     }
 
@@ -361,7 +388,7 @@ mod tests {
             scene.cylinders =
                 CylinderLanes { x: vec![x], z: vec![-z], radius: vec![radius], y_min: vec![y_min], y_max: vec![y_max] };
             let [_, cylinders] = blocks_of_pixels(&scene, fov_deg, &settings);
-            assert_holds(&cylinders[0], &sample, "cylinder");
+            assert_holds(&cylinders, &sample, "cylinder");
         }
     }
 
@@ -384,15 +411,14 @@ mod tests {
             let tiles = Tiles::new(&scene, 70.0, &settings);
             for (row, column) in (0..217).flat_map(|row| (0..333).map(move |column| (row, column))) {
                 let listed = tiles.candidates(column, row).spheres;
-                let near = |i: &u32| blocks[*i as usize].near;
-                assert!(listed.is_sorted_by_key(near));
+                let block = |i: &u32| blocks.binary_search_by_key(i, |(i, _)| *i).expect("listed is what has a block");
+                assert!(listed.is_sorted_by_key(|i| blocks[block(i)].1.near));
                 if n_objects <= 5 {
                     let is_seen = |block: &Cells| {
                         (u32::from(block.columns[0])..=u32::from(block.columns[1])).contains(&column)
                             && (u32::from(block.rows[0])..=u32::from(block.rows[1])).contains(&row)
                     };
-                    (blocks.iter().enumerate().filter(|(_, block)| is_seen(block)))
-                        .for_each(|(i, _)| assert!(listed.contains(&(i as u32))));
+                    (blocks.iter().filter(|(_, block)| is_seen(block))).for_each(|(i, _)| assert!(listed.contains(i)));
                 }
             }
             let is_row_empty = |row: &u32| (0..333).all(|column| tiles.candidates(column, *row).is_empty());

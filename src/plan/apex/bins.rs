@@ -7,7 +7,7 @@ use rayon::prelude::*;
 /// A block of cells: an outline on a grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cells {
-    /// First and last column; none when the first is behind the last.
+    /// First and last column.
     pub columns: [u16; 2],
     /// First and last row.
     pub rows: [u16; 2],
@@ -16,21 +16,10 @@ pub struct Cells {
 }
 
 impl Cells {
-    /// No cell.
-    pub const NONE: Self = Self { columns: [1, 0], rows: [1, 0], near: 0.0 };
-
-    /// Tells whether there is no cell.
-    pub fn is_none(&self) -> bool {
-        self.columns[0] > self.columns[1]
-    }
-
     /// Returns the block in a grid whose cells are 2ᵘ columns wide and 2ᵛ rows high.
     pub fn coarser(self, [u, v]: [u32; 2]) -> Self {
         let coarser = |cells: [u16; 2], shift: u32| cells.map(|cell| (u32::from(cell) >> shift) as u16);
-        match self.is_none() {
-            true => Self::NONE,
-            false => Self { columns: coarser(self.columns, u), rows: coarser(self.rows, v), near: self.near },
-        }
+        Self { columns: coarser(self.columns, u), rows: coarser(self.rows, v), near: self.near }
     }
 }
 
@@ -49,17 +38,22 @@ impl Bins {
     /// Sorts objects into the cells of a grid of `n_columns` and `n_rows`, by counting: few nearest first, many as they come,
     /// since neighbours then mostly go to neighbouring cells, and each cell afterwards.
     ///
-    /// `cells(i)`: those of object i. The order in a cell is by `near`, then by index, on any number of threads.
+    /// `objects`: indices, rising, and the cells of each; `coarser` makes these cells of the grid. The order in a cell is by
+    /// `near`, then by index, on any number of threads.
     ///
     /// # Panics
     /// When the lists have 2³² indices or more together.
-    pub fn new(n_objects: usize, [n_columns, n_rows]: [u32; 2], cells: impl Fn(usize) -> Cells + Send + Sync) -> Self {
-        let (n_columns, n_rows) = (n_columns as usize, n_rows as usize);
+    pub fn new(
+        objects: &[(u32, Cells)],
+        [n_columns, n_rows]: [u32; 2],
+        coarser: impl Fn(Cells) -> Cells + Send + Sync,
+    ) -> Self {
+        let (n_columns, n_rows, n_objects) = (n_columns as usize, n_rows as usize, objects.len());
         let n_bands = if n_objects < PARALLEL_FROM { 1 } else { rayon::current_num_threads() * 2 };
         let band_rows = n_rows.div_ceil(n_bands);
-        let order = (n_objects < PARALLEL_FROM).then(|| nearest_first(n_objects, &cells));
-        let at = |place: usize| order.as_ref().map_or(place as u32, |order| order[place]);
-        let blocks = || (0..n_objects).map(at).map(|i| (cells(i as usize), i));
+        let order = (n_objects < PARALLEL_FROM).then(|| nearest_first(objects));
+        let sorted = order.as_deref().unwrap_or(objects);
+        let blocks = || sorted.iter().map(|&(i, cells)| (coarser(cells), i));
         let band = |i: usize| Band { rows: i * band_rows..n_rows.min((i + 1) * band_rows), n_columns };
 
         let mut starts = vec![0; n_columns * n_rows + 1];
@@ -92,11 +86,11 @@ impl Bins {
     }
 }
 
-/// Returns the indices of all objects, nearest first.
-fn nearest_first(n_objects: usize, cells: impl Fn(usize) -> Cells) -> Vec<u32> {
-    let mut entries: Vec<_> = (0..n_objects).map(|i| entry(&cells(i), i as u32)).collect();
-    entries.sort_unstable();
-    entries.into_iter().map(|entry| entry as u32).collect()
+/// Returns all objects, nearest first.
+fn nearest_first(objects: &[(u32, Cells)]) -> Vec<(u32, Cells)> {
+    let mut objects = objects.to_vec();
+    objects.sort_unstable_by_key(|(i, cells)| entry(cells, *i));
+    objects
 }
 
 /// Returns a number that is larger for what is farther or, at the same depth, has a higher index.
@@ -126,8 +120,7 @@ impl Band {
         let [first, last] = block.rows.map(usize::from);
         let [left, right] = block.columns.map(usize::from);
         let (top, n_columns) = (self.rows.start, self.n_columns);
-        let end = if block.is_none() { top } else { (last + 1).min(self.rows.end) };
-        (first.max(top)..end).map(move |row| {
+        (first.max(top)..(last + 1).min(self.rows.end)).map(move |row| {
             let start = (row - top) * n_columns;
             start + left..start + right + 1
         })
@@ -169,9 +162,6 @@ mod tests {
     use crate::testing::Stream;
 
     fn random_cells(stream: &mut Stream) -> Cells {
-        if stream.below(5) == 0 {
-            return Cells::NONE;
-        }
         let mut range = |n: usize| {
             let first = stream.below(n);
             [first as u16, (first + stream.below(n - first)) as u16]
@@ -184,18 +174,19 @@ mod tests {
         for n_objects in [0, 1, 100, PARALLEL_FROM + 1] {
             let mut stream = Stream::new(n_objects as u64);
             let cells: Vec<_> = (0..n_objects).map(|_| random_cells(&mut stream)).collect();
-            let bins = Bins::new(n_objects, [13, 37], |i| cells[i]);
+            let is_listed = |i: &u32| !i.is_multiple_of(5);
+            let objects: Vec<_> = (0..n_objects as u32).filter(is_listed).map(|i| (i, cells[i as usize])).collect();
+            let bins = Bins::new(&objects, [13, 37], |cells| cells);
             for (row, column) in (0..37).flat_map(|row| (0..13).map(move |column| (row, column))) {
                 let is_in = |i: &u32| {
                     let Cells { columns, rows, .. } = cells[*i as usize];
                     columns[0] <= column && column <= columns[1] && rows[0] <= row && row <= rows[1]
                 };
-                let mut expected: Vec<u32> = (0..n_objects as u32).filter(is_in).collect();
+                let mut expected: Vec<u32> = (0..n_objects as u32).filter(is_listed).filter(is_in).collect();
                 expected.sort_by(|a, b| cells[*a as usize].near.total_cmp(&cells[*b as usize].near));
                 assert_eq!(bins.list(usize::from(row) * 13 + usize::from(column)), expected);
             }
-            let is_empty = cells.iter().all(Cells::is_none);
-            assert_eq!(bins.are_empty(0..13 * 37), is_empty);
+            assert_eq!(bins.are_empty(0..13 * 37), objects.is_empty());
         }
     }
 
@@ -203,6 +194,5 @@ mod tests {
     fn coarser_cells_hold_what_the_finer_ones_hold() {
         let block = Cells { columns: [3, 17], rows: [8, 8], near: 1.0 };
         assert_eq!(block.coarser([3, 2]), Cells { columns: [0, 2], rows: [2, 2], near: 1.0 });
-        assert!(Cells::NONE.coarser([3, 3]).is_none());
     }
 }

@@ -15,6 +15,7 @@ pub(super) use bins::{Bins, Cells};
 pub(super) use cube::Cube;
 pub use cube::{CubeFace, Expect, Look, Slopes};
 pub(super) use outline::{BLOCK, Outline, Outlines};
+pub(super) use seen::rounded_down;
 
 /// Half an ulp of 1.
 const ROUNDOFF: f64 = f64::EPSILON / 2.0;

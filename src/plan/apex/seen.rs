@@ -135,19 +135,19 @@ fn spot(outline: &Outline, object: u32) -> Option<Spot> {
     let [[u_low, u_high], [v_low, v_high]] = outline.slopes;
     let is_seen = u_low.max(v_low) <= LIMIT && u_high.min(v_high) >= -LIMIT;
     is_seen.then(|| Spot {
-        low: [down(u_low), down(v_low)],
-        high: [-down(-u_high), -down(-v_high)],
-        near: down(outline.near).max(0.0),
+        low: [rounded_down(u_low), rounded_down(v_low)],
+        high: [-rounded_down(-u_high), -rounded_down(-v_high)],
+        near: rounded_down(outline.near).max(0.0),
         object,
     })
 }
 
 /// Returns a number of binary32 that is not above a number that is not +∞.
 ///
-/// What is taken off is more than rounding to binary32 can add: half of 2⁻²³ of the number, or of the least of all. Which way
-/// that was need not be asked; the answer would be hard to foresee.
+/// What is taken off, 2⁻²³ of the number and more than any of the least, is twice what rounding to binary32 can add. Which
+/// way it was rounded need not be asked; the answer would be hard to foresee.
 #[inline]
-fn down(number: f64) -> f32 {
+pub fn rounded_down(number: f64) -> f32 {
     let lowered = number - (number.abs() * f64::from(f32::EPSILON) + f64::from(f32::MIN_POSITIVE));
     (lowered as f32).min(f32::MAX)
 }
@@ -164,14 +164,14 @@ mod tests {
         for _ in 0..100_000 {
             let number = stream.of_any_scale(1000);
             for number in [number, -number] {
-                let rounded = f64::from(down(number));
+                let rounded = f64::from(rounded_down(number));
                 let room = number.abs() * 2e-7 + 3e-38;
                 let is_close = rounded >= number - room || number > f64::from(f32::MAX) || rounded < -1e38;
                 assert!(rounded <= number && is_close, "{number}: {rounded}");
             }
         }
-        assert_eq!(down(f64::NEG_INFINITY), f32::NEG_INFINITY);
-        assert!(down(0.0) < 0.0 && down(f64::MAX) == f32::MAX);
+        assert_eq!(rounded_down(f64::NEG_INFINITY), f32::NEG_INFINITY);
+        assert!(rounded_down(0.0) < 0.0 && rounded_down(f64::MAX) == f32::MAX);
     }
 
     /// A block sees what its spheres are seen as one by one.
