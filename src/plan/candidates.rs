@@ -1,5 +1,7 @@
 //! Lists of objects that a ray may meet.
 
+use rayon::prelude::*;
+
 use crate::plan::Scene;
 use crate::plan::scene::retain_at;
 
@@ -108,6 +110,9 @@ impl ListTable {
     }
 }
 
+/// Indices that a thread writes at a time.
+const INDICES_PER_TASK: usize = 1 << 16;
+
 /// Owned lists of objects.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ObjectLists {
@@ -118,6 +123,12 @@ pub struct ObjectLists {
 }
 
 impl ObjectLists {
+    /// Lists all objects of a scene.
+    pub(super) fn everything(scene: &Scene<'_>) -> Self {
+        let all = |n: usize| (0..n as u32).into_par_iter().with_min_len(INDICES_PER_TASK).collect();
+        Self { spheres: all(scene.sphere_primitives.len()), cylinders: all(scene.cylinder_primitives.len()) }
+    }
+
     /// Lists the objects of a scene, counted spheres first, that `has` names.
     pub(super) fn of_all(scene: &Scene<'_>, has: impl Fn(usize) -> bool) -> Self {
         let n_spheres = scene.sphere_primitives.len();

@@ -23,10 +23,15 @@ const BLOCKS_PER_TASK: usize = 256;
 
 /// Returns the places of the points along the curve: the index of the first point, of the second, and so on.
 ///
+/// Of many points the last bits of the codes give way to their indices: then a code and its index are one number, which
+/// sorts in half the time, and there are still hundreds of cells for each point.
+///
 /// `point(i)`: coordinates, any numbers.
 pub fn order(n_points: usize, point: impl Fn(usize) -> [f64; 3] + Send + Sync) -> Vec<u32> {
     let ranges = ranges(n_points, &point);
-    let mut codes = vec![(0_u64, 0_u32); n_points];
+    let index_bits = usize::BITS - n_points.leading_zeros();
+    let n_dropped = (3 * BITS + index_bits).saturating_sub(u64::BITS);
+    let mut codes = vec![0_u64; n_points];
     let blocks = codes.par_chunks_mut(BLOCK).with_min_len(BLOCKS_PER_TASK);
     blocks.enumerate().for_each(|(block, codes)| {
         let mut cells = [[0; BLOCK]; 3];
@@ -35,11 +40,13 @@ pub fn order(n_points: usize, point: impl Fn(usize) -> [f64; 3] + Send + Sync) -
             let point = point(i);
             (0..3).for_each(|k| cells[k][lane] = cell(point[k], ranges[k]));
         }
-        let indexed = places(cells).into_iter().zip(first as u32..);
+        let indexed = places(cells).into_iter().zip(first as u64..);
+        let indexed = indexed.map(|(code, i)| code >> n_dropped << index_bits | i);
         codes.iter_mut().zip(indexed).for_each(|(code, indexed)| *code = indexed);
     });
     codes.par_sort_unstable();
-    codes.into_par_iter().map(|(_, i)| i).collect()
+    let index = (1 << index_bits) - 1;
+    codes.into_par_iter().with_min_len(BLOCK * BLOCKS_PER_TASK).map(|code| (code & index) as u32).collect()
 }
 
 /// Returns the cell of a coordinate in a range; what is no number is in cell 0.

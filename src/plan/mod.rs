@@ -78,8 +78,8 @@ pub struct Plan<'p> {
     along_rays: AlongRays,
     /// Everything in the scene.
     everything: ObjectLists,
-    /// What reflected rays can meet.
-    mirrored: ObjectLists,
+    /// What reflected rays can meet, unless it is everything.
+    mirrored: Option<ObjectLists>,
     /// The indices of all lights.
     all_lights: Vec<u32>,
 }
@@ -100,11 +100,8 @@ pub fn plan<'p>(view: SceneView<'p>, settings: &Settings) -> Plan<'p> {
         scene.surfaces[..n_stored].iter().map(|surface| Terms::new(surface, &scene.lights, settings)).collect();
     report.add(&scene, known.as_ref(), &terms);
 
-    let everything = ObjectLists::of_all(&scene, |_| true);
-    let mirrored = match &known {
-        Some(known) => ObjectLists::of_all(&scene, |i| known.roles.mirrored[i]),
-        None => everything.clone(),
-    };
+    let everything = ObjectLists::everything(&scene);
+    let mirrored = known.as_ref().map(|known| ObjectLists::of_all(&scene, |i| known.roles.mirrored[i]));
     Plan {
         search,
         around_lights: AroundLights::new(&scene, search, settings),
@@ -229,7 +226,7 @@ impl Plan<'_> {
     /// Returns what a reflected ray can meet.
     #[must_use]
     pub fn mirrored(&self) -> Candidates<'_> {
-        self.mirrored.as_candidates()
+        self.mirrored.as_ref().unwrap_or(&self.everything).as_candidates()
     }
 
     /// Returns what a ray that is reflected by `mirror` can meet.

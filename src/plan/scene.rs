@@ -278,7 +278,8 @@ pub fn is_within_range(view: &SceneView<'_>, part: Part) -> bool {
     let min = libm::ldexp(1.0, MIN_EXPONENT);
     let is_within = |length: f64| length == 0.0 || (length * scale).abs() >= min;
     let has_place = |place: DVec3| place.to_array().into_iter().all(is_within);
-    view.spheres().iter().all(|s| has_place(s.center) && is_within(s.radius))
+    let spheres = view.spheres().par_iter().with_min_len(SPHERES_PER_TASK);
+    spheres.all(|s| has_place(s.center) && is_within(s.radius))
         && cylinders.iter().all(|c| [c.x, c.z, c.radius, c.y_min, c.y_max].into_iter().all(is_within))
         && shining(view).all(|light| has_place(light.position))
 }

@@ -23,6 +23,7 @@ mod boxes;
 
 use rayon::prelude::*;
 
+use crate::plan::apex::rounded_down;
 use crate::plan::curve;
 use crate::plan::tree::boxes::LANES;
 use crate::plan::{Object, Scene};
@@ -90,20 +91,15 @@ impl Forest {
         let n_objects = n_spheres + scene.cylinders.radius.len();
         let bounds_of = |i: u32| bounds(scene, i as usize);
         let mut forest = Self { n_spheres: n_spheres as u32, ..Self::default() };
-        let mut by_size: Vec<(i32, Vec<u32>)> = Vec::new();
         let sizes = (0..n_objects).into_par_iter().with_min_len(OBJECTS_PER_TASK).map(|i| size_class(scene, i));
-        for (i, size) in (0..).zip(sizes.collect::<Vec<_>>()) {
-            let Some(size) = size else {
-                forest.apart.push(i);
-                continue;
-            };
-            match by_size.iter_mut().find(|(other, _)| *other == size) {
-                Some((_, objects)) => objects.push(i),
-                None => by_size.push((size, vec![i])),
-            }
-        }
-        for (_, objects) in by_size {
-            if objects.len() < MIN_OBJECTS {
+        let sizes: Vec<i8> = sizes.collect();
+        let mut is_present = [false; 1 << u8::BITS];
+        sizes.iter().for_each(|size| is_present[usize::from(size.cast_unsigned())] = true);
+        // What is large is met before what is small.
+        for size in (i8::MIN..=i8::MAX).rev().filter(|size| is_present[usize::from(size.cast_unsigned())]) {
+            let all = (0..n_objects).into_par_iter().with_min_len(OBJECTS_PER_TASK);
+            let objects: Vec<_> = all.filter(|&i| sizes[i] == size).map(|i| i as u32).collect();
+            if size == APART || objects.len() < MIN_OBJECTS {
                 forest.apart.extend(objects);
             } else {
                 let tree = Tree::new(objects, bounds_of);
@@ -198,12 +194,17 @@ impl Tree {
     }
 }
 
-/// Returns the size of an object as an exponent, in steps; `None` for what is in no tree.
-fn size_class(scene: &Scene<'_>, i: usize) -> Option<i32> {
+/// The size of what is in no tree, wherever it is.
+const APART: i8 = i8::MAX;
+
+/// Returns the size of an object as an exponent, in steps, or [`APART`].
+fn size_class(scene: &Scene<'_>, i: usize) -> i8 {
     let [low, high] = exact_bounds(scene, i);
     let is_near = low.iter().chain(&high).all(|c| c.abs() <= FARTHEST);
     let size = (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max);
-    is_near.then(|| libm::ilogb(size.max(f64::MIN_POSITIVE)).max(SMALLEST).div_euclid(SIZES_PER_TREE))
+    // Of a number that is normal and positive.
+    let exponent = |size: f64| (size.to_bits() >> (f64::MANTISSA_DIGITS - 1)) as i32 - (f64::MAX_EXP - 1);
+    if is_near { exponent(size.max(f64::MIN_POSITIVE)).max(SMALLEST).div_euclid(SIZES_PER_TREE) as i8 } else { APART }
 }
 
 /// Returns the least and the largest coordinates of an object, each to a rounding.
@@ -224,8 +225,8 @@ fn exact_bounds(scene: &Scene<'_>, i: usize) -> [[f64; 3]; 2] {
 /// Returns a box in binary32 outside of an object.
 fn bounds(scene: &Scene<'_>, i: usize) -> Bounds {
     let [low, high] = exact_bounds(scene, i);
-    // A rounding of binary64 is less than half of one of binary32: the next number is outside.
-    [low.map(|c| (c as f32).next_down()), high.map(|c| (c as f32).next_up())]
+    // What is taken off is more than a rounding of binary32 and one of binary64.
+    [low.map(rounded_down), high.map(|c| -rounded_down(-c))]
 }
 
 #[cfg(test)]

@@ -27,6 +27,8 @@
 //! τ = |w|·(e + 4u|w|): b = m·w is off by |m|τ/|w|, a = |w|² by 2τ, and D = b² − a·p by (2|m|² + 2|p|)·τ; twice that is
 //! used.
 
+use rayon::prelude::*;
+
 use crate::ir::Surface;
 use crate::math::DoubleDouble;
 use crate::plan::{Candidates, Light, Object, Part, Pass, Plan, Scene};
@@ -389,7 +391,8 @@ impl Bounds {
                 (s.x[i] * s.x[i] + s.y[i] * s.y[i] + s.z[i] * s.z[i], s.radius[i] * s.radius[i]);
             (squared - radius_squared).abs() > MIN_POWER * (squared + radius_squared)
         };
-        if !is_moderate(scene) || !(0..s.radius.len()).all(has_side) {
+        let sides = (0..s.radius.len()).into_par_iter().with_min_len(OBJECTS_PER_TASK);
+        if !is_moderate(scene) || !sides.all(has_side) {
             return None;
         }
         let light = |light: &Light| WideLight {
@@ -457,6 +460,9 @@ impl Bounds {
     }
 }
 
+/// Objects that a thread looks at at a time.
+const OBJECTS_PER_TASK: usize = 1 << 14;
+
 /// Tells whether all numbers of a scene lie where the bounds hold.
 fn is_moderate(scene: &Scene<'_>) -> bool {
     let (s, c) = (&scene.spheres, &scene.cylinders);
@@ -464,8 +470,12 @@ fn is_moderate(scene: &Scene<'_>) -> bool {
     let lights = scene.lights.iter().flat_map(|light| light.position.to_array());
     let colors = scene.lights.iter().flat_map(|light| light.color.to_array());
     let surfaces = scene.surfaces.iter().flat_map(|s| [s.ambient, s.diffuse, s.specular].map(|c| c.to_array()));
-    lengths.into_iter().flatten().copied().chain(lights).all(|length| length.abs() <= MAX_LENGTH)
-        && s.radius.iter().chain(&c.radius).all(|&radius| radius >= MIN_RADIUS)
+    let are_all = |lengths: &[f64], is_fine: fn(f64) -> bool| {
+        lengths.par_iter().with_min_len(OBJECTS_PER_TASK).all(|length| is_fine(*length))
+    };
+    lengths.into_iter().all(|lengths| are_all(lengths, |length| length.abs() <= MAX_LENGTH))
+        && [&s.radius, &c.radius].into_iter().all(|radii| are_all(radii, |radius| radius >= MIN_RADIUS))
+        && lights.into_iter().all(|length| length.abs() <= MAX_LENGTH)
         && colors.chain(surfaces.flatten()).chain(scene.background.to_array()).all(|c| c.abs() <= MAX_COEFFICIENT)
         && scene.surfaces.iter().all(|s| s.reflectance <= MAX_COEFFICIENT)
 }
