@@ -132,8 +132,8 @@ impl<'p> Tracer<'p> {
         self
     }
 
-    /// Calls `visit` with the column, the row and the channels of each pixel that packets prove; of none, if there are no
-    /// packets.
+    /// Calls `visit` with the column, the row and the channels of each pixel of which packets prove the colour, not the bytes
+    /// alone; of none, if there are no packets.
     #[cfg(feature = "testing")]
     pub fn for_proved(&self, mut visit: impl FnMut(u32, u32, &Proved)) {
         let Some(wide) = &self.wide else { return };

@@ -92,21 +92,17 @@ impl TileJob<'_> {
     /// Settles the pixels whose bytes are the same whatever their rays find, and returns their lanes.
     #[inline(always)]
     pub fn finish_settled<L: Lanes>(&mut self, paths: &Paths<L>, lanes: L::Mask) -> L::Mask {
-        let (zero, half, one) = (L::splat(0.0), L::splat(0.5), L::splat(1.0));
+        let (zero, one) = (L::splat(0.0), L::splat(1.0));
         let (least, error) = mirror::compose(paths, [zero; 3], zero);
         let (most, _) = mirror::compose(paths, [one; 3], zero);
         let error = self.wide.fault.bound(error);
         let (bytes, is_low_proved) = shade::quantise(least, error);
         let (high_bytes, is_high_proved) = shade::quantise(most, error);
         let settled = lanes & is_low_proved & is_high_proved & bytes.eq(high_bytes);
-        // What is noted is the middle, and how far off it may be.
-        let (mut middle, mut reach) = (least, zero);
-        for k in 0..3 {
-            let spread = (most[k] - least[k]) * half;
-            middle[k] = least[k] + spread;
-            reach = reach.max(spread);
+        // What was rounded are two ends between which the colour lies: of the colour itself there is nothing to note.
+        if let Some(notes) = &mut self.scratch.notes {
+            notes.note_errors(error, settled);
         }
-        self.note(paths.pixel, middle, error + reach, settled);
         self.put(paths.pixel, bytes, settled);
         self.scratch.counts.settled_rays += u64::from(settled.bits().count_ones());
         settled
