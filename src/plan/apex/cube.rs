@@ -1,8 +1,9 @@
 //! A cube of grids around a point: what lies between the point and others.
 //!
-//! The point looks along each axis in both directions, through the six faces of a cube. What it sees through a face (see
-//! `seen`) is sorted into strips and those into grids ([`Grid`]), as [`Spot`]s. A query goes through the face of its largest coordinate, where both slopes
-//! are at most 1; its error may add a little, which faces overlap by ([`LIMIT`]).
+//! The point looks along each axis in both directions, through the six faces of a cube. What it sees through a face
+//! (see `seen`) is sorted into strips and those into grids ([`Grid`]), as [`Spot`]s. A query goes through the face of
+//! its largest coordinate, where both slopes are at most 1; its error may add a little, which faces overlap by
+//! ([`LIMIT`]).
 
 use std::ops::{Add, Div, Mul, Neg, RangeInclusive, Sub};
 

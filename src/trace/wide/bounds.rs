@@ -2,9 +2,10 @@
 //! the packets work with, and how far each may be off.
 //!
 //! # Errors of eye rays
-//! What is said here holds for any [`Precision`]: u is 2⁻⁵³ for binary64. The direction of an eye ray is d = (X·k, Y·k, −1) with whole X, Y; its coordinates are off by at most a
-//! share e of themselves, which the camera knows. With κ = e + 8u every product of a coordinate of d with an exact number
-//! is within κ of the exact product, relative to it, and so is a sum of two of them relative to the product of lengths.
+//! What is said here holds for any [`Precision`]: u is 2⁻⁵³ for binary64. The direction of an eye ray is
+//! d = (X·k, Y·k, −1) with whole X, Y; its coordinates are off by at most a share e of themselves, which the camera
+//! knows. With κ = e + 8u every product of a coordinate of d with an exact number is within κ of the exact product,
+//! relative to it, and so is a sum of two of them relative to the product of lengths.
 //!
 //! *Sphere* with centre c and radius r: b = c·d is off by κ|c||d|, a = |d|² by 2κ·a, and the power p = |c|² − r² is
 //! computed in double-double and rounded. D = b² − a·p is therefore off by at most a·σ, σ = 8κ(|c|² + r²), so that

@@ -1,10 +1,11 @@
 //! What lies between a packet of points and a light.
 //!
-//! The segment is followed from the light, whose place is exact, to the point: w, with s from 0 at the light to 1 at the
-//! point. Every point lies outside of all objects, or on them, because the eye does and a ray ends at the first surface
-//! it meets; or else inside of a shell (see `bounds`), which hides nothing that is inside too and everything that is not. So a sphere that the light is outside of is met with 0 < s < 1 exactly when D ≥ 0 and 0 < b < a, with a, b, D
-//! as in `bounds`: no root is taken. A cylinder is met if, within the part of the segment that lies inside of its infinite
-//! wall, some height is its own.
+//! The segment is followed from the light, whose place is exact, to the point: w, with s from 0 at the light to 1 at
+//! the point. Every point lies outside of all objects, or on them, because the eye does and a ray ends at the first
+//! surface it meets; or else inside of a shell (see `bounds`), which hides nothing that is inside too and everything
+//! that is not. So a sphere that the light is outside of is met with 0 < s < 1 exactly when D ≥ 0 and 0 < b < a, with
+//! a, b, D as in `bounds`: no root is taken. A cylinder is met if, within the part of the segment that lies inside of
+//! its infinite wall, some height is its own.
 
 use crate::plan::{Object, Part, Plan};
 use crate::trace::kernels::{Lanes, Mask};
