@@ -20,6 +20,10 @@ use crate::trace::wide::shadow::{LightOccluders, is_behind_cap};
 /// Fewer lanes are looked up one by one.
 const MIN_TOGETHER: u32 = 3;
 
+/// A packet of reflected rays that may meet more spheres than these, or more cylinders, has a ray that is known too badly, as
+/// one that all but touched its mirror: it is left to finer arithmetic.
+const MAX_FOUND: usize = 1024;
+
 /// The tables of one tile or packet, and the numbers of all objects in it.
 #[derive(Debug)]
 pub(super) struct Few {
@@ -223,7 +227,7 @@ fn look_at_once<L: Lanes>(plan: &Plan<'_>, light_idx: usize, w: &[L; 3], off: L,
     plan.look_at_once(light_idx, face, Slopes { low: [-low_u, -low_v], high: [high_u, high_v], far })
 }
 
-/// Finds what a packet of reflected rays may meet; `false` when that is not to be had.
+/// Finds what a packet of reflected rays may meet; `false` when that is not to be had, or too much.
 #[inline(always)]
 pub(super) fn find_along<L: Lanes>(plan: &Plan<'_>, rays: &Rays<L>, active: L::Mask, found: &mut ObjectLists) -> bool {
     let mut numbers = [[0.0; MAX_LANES]; 9];
@@ -256,13 +260,14 @@ pub(super) fn find_along<L: Lanes>(plan: &Plan<'_>, rays: &Rays<L>, active: L::M
     true
 }
 
-/// Adds what one ray may meet.
+/// Adds what one ray may meet, as [`find_along`].
 #[inline(always)]
 fn find_along_one<L: Lanes>(plan: &Plan<'_>, ray: &SearchRay, leaving: f64, found: &mut ObjectLists) -> bool {
     let SearchRay { origin, dir, origin_error, dir_error } = *ray;
     let plain = PlainRay { origin, dir, origin_error, origin_y_error: origin_error, dir_error };
     let scene = &plan.scene;
     let mut matters = f64::INFINITY;
+    let mut is_too_much = false;
     let seen = plan.visit_along::<SideBySide<L::Single>>(ray, |object| {
         let (list, i) = match object {
             Object::Sphere(i) => (&mut found.spheres, i),
@@ -275,6 +280,10 @@ fn find_along_one<L: Lanes>(plan: &Plan<'_>, ray: &SearchRay, leaving: f64, foun
             return matters;
         }
         if !list.contains(&i) {
+            if list.len() == MAX_FOUND {
+                is_too_much = true;
+                return f64::NEG_INFINITY;
+            }
             list.push(i);
         }
         if is_sphere && !is_left {
@@ -282,5 +291,5 @@ fn find_along_one<L: Lanes>(plan: &Plan<'_>, ray: &SearchRay, leaving: f64, foun
         }
         matters
     });
-    seen.is_some()
+    seen.is_some() && !is_too_much
 }
