@@ -127,6 +127,28 @@ fn searching_changes_no_pixel() {
     }
 }
 
+/// A mirror shows spheres at almost the same place, so that its rays may meet them all, which are more than a packet lists: such
+/// packets are left to finer arithmetic.
+#[test]
+fn rays_that_may_meet_thousands_of_spheres_change_no_pixel() {
+    let dull =
+        Finish { ambient: [0.1; 3], diffuse: [0.5, 0.6, 0.3], specular: [0.0; 3], shininess: 1.0, reflectance: 0.0 };
+    let mut sketch = Sketch::new(60.0, [0.2, 0.3, 0.5]);
+    sketch.light([0.6, 0.5, 0.4], [3.0, 4.0, 1.0]);
+    sketch.surface(Finish { reflectance: 0.4, ..dull }).sphere([0.1, -0.1, -4.0], 1.0).surface(dull);
+    for i in 0..1500 {
+        sketch.sphere([0.3, 0.2, 9.0 + 1e-6 * f64::from(i)], 4.0);
+    }
+    let (search, with) = render(&sketch, Passes::all());
+    assert_eq!(search, Search::Structures);
+    assert!(with == render(&sketch, Passes::none()).1);
+    let made = sketch.make();
+    let size = Size::new(WIDTH, HEIGHT).expect("a size within the limits");
+    let tracer = Tracer::new(plan(made.view(), &Settings { size, ..Settings::default() }));
+    let counts = tracer.render_rows(0..HEIGHT, &mut vec![0; with.len()]);
+    assert!(counts.settled_pixels > 20, "{counts:?}");
+}
+
 /// The same scenes with one object more or less: before and behind the steps at which pairs are no longer looked at, and from
 /// which on objects are looked up.
 #[test]
