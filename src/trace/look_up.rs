@@ -44,9 +44,9 @@ impl<S> Expect for SideBySide<S> {
     }
 }
 
-/// With so many candidates a ray that is too vague to be looked up is not tested in any arithmetic but the finest: the test
-/// would take longer than that, and end in doubt.
-const MANY: usize = 1024;
+/// With more candidates than these a ray that is too vague to be looked up is not tested in any arithmetic but the finest: the
+/// test would take longer than that, and end in doubt. Nor is a packet for which more are found: a ray of it is vague.
+pub const MANY: usize = 1024;
 
 /// Directions that are off by a larger share, 2⁻¹², are vague.
 const VAGUE: f64 = 1.0 / 4096.0;

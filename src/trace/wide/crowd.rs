@@ -20,10 +20,6 @@ use crate::trace::wide::shadow::{LightOccluders, is_behind_cap};
 /// Fewer lanes are looked up one by one.
 const MIN_TOGETHER: u32 = 3;
 
-/// A packet of reflected rays that may meet more spheres than these, or more cylinders, has a ray that is known too badly, as
-/// one that all but touched its mirror: it is left to finer arithmetic.
-const MAX_FOUND: usize = 1024;
-
 /// The tables of one tile or packet, and the numbers of all objects in it.
 #[derive(Debug)]
 pub(super) struct Few {
@@ -280,7 +276,7 @@ fn find_along_one<L: Lanes>(plan: &Plan<'_>, ray: &SearchRay, leaving: f64, foun
             return matters;
         }
         if !list.contains(&i) {
-            if list.len() == MAX_FOUND {
+            if list.len() == look_up::MANY {
                 is_too_much = true;
                 return f64::NEG_INFINITY;
             }
