@@ -61,7 +61,7 @@ impl Counts {
         }
     }
 
-    /// Counts some shadow rays, each tested against as many objects.
+    /// Counts some shadow rays, and the tests of all of them together.
     #[inline(always)]
     pub(super) fn add_shadow_rays(&mut self, n_rays: u32, n_tests: u32) {
         self.shadow_rays += u64::from(n_rays);
