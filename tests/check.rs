@@ -117,8 +117,131 @@ fn a_folder_means_every_scene_below_it() {
     let call = folder.clisc(&["check", ".", "--format", "short"]);
     let paths: Vec<_> =
         call.stdout.lines().filter(|line| line.contains("E0201")).map(|line| line.split(':').next()).collect();
-    assert_eq!(paths, [Some("./a.cli"), Some("./b.cli"), Some("./c/a.cli")]);
+    assert_eq!(paths, [Some("a.cli"), Some("b.cli"), Some("c/a.cli")]);
     assert!(call.stderr.ends_with("3 scenes checked: 3 errors, 3 warnings\n"), "{}", call.stderr);
+    assert_eq!(folder.clisc(&["check", "./", "--format", "short"]).stdout, call.stdout);
+}
+
+/// Returns the scenes that `check` finds wrong, in order.
+fn scenes_found(folder: &Folder, args: &[&str]) -> Vec<String> {
+    let call = folder.clisc(&[&["check", "--format", "short"], args].concat());
+    let errors = call.stdout.lines().filter(|line| line.contains("E0201"));
+    errors.map(|line| line.split(':').next().unwrap_or_default().to_owned()).collect()
+}
+
+#[test]
+fn what_is_hidden_or_ignored_is_read_only_when_it_is_named() {
+    let folder = Folder::new();
+    for name in [
+        "a.cli",
+        "B.CLI",
+        ".git/x.cli",
+        ".#a.cli",
+        "._a.cli",
+        ".cli",
+        "built/x.cli",
+        "deep/old.cli",
+        "deep/new.cli",
+        "drafts/x.cli",
+        "deep/drafts/x.cli",
+        "own/kept.cli",
+    ] {
+        folder.put(name, "x");
+    }
+    folder.put(".gitignore", "built/\n");
+    folder.put("deep/.gitignore", "old.cli\n");
+    folder.put("clisc.toml", "exclude = [\"drafts/\", \"kept.cli\"]\n");
+    folder.put("own/clisc.toml", "");
+    assert_eq!(scenes_found(&folder, &["."]), ["B.CLI", "a.cli", "deep/new.cli", "own/kept.cli"]);
+    let named = ["built", ".git/x.cli", "drafts/x.cli", "deep/old.cli", "deep/drafts"];
+    let expected = ["built/x.cli", ".git/x.cli", "drafts/x.cli", "deep/old.cli", "deep/drafts/x.cli"];
+    assert_eq!(scenes_found(&folder, &named), expected);
+    let call = folder.clisc(&["fmt", "--check", "."]);
+    assert!(call.stderr.contains("4 scenes to be formatted"), "{}", call.stderr);
+    let help = folder.clisc(&["check", "--help"]).stdout.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(help.contains("A path that is named here is always read"), "{help}");
+}
+
+#[test]
+fn a_folder_of_which_all_is_left_out_says_so() {
+    let folder = Folder::new();
+    folder.put("x/.gitignore", "*.cli\n");
+    folder.put("x/a.cli", "x");
+    let call = folder.clisc(&["check", "x"]);
+    assert_eq!(call.code, Some(2));
+    assert!(call.stderr.contains("there is no .cli file below `x` but 1 file left out"), "{}", call.stderr);
+    folder.put("clisc.toml", "exclude = [\"{a\"]\n");
+    folder.put("b.cli", scene("b.png"));
+    for args in [&["fmt", "."][..], &["check", "."]] {
+        let call = folder.clisc(args);
+        assert_eq!(call.code, Some(2), "{}", call.stderr);
+        assert!(call.stderr.contains("clisc.toml`: `exclude`: ") && call.stderr.contains("{a"), "{}", call.stderr);
+    }
+}
+
+#[test]
+#[cfg(unix)]
+fn links_are_followed_to_files_and_dangling_ones_are_told() {
+    use std::os::unix::fs::symlink;
+
+    let folder = Folder::new();
+    folder.put("elsewhere/a.cli", "x");
+    folder.put("x/b.cli", scene("b.png"));
+    for (to, link) in
+        [("../elsewhere/a.cli", "x/a.cli"), ("missing", "x/gone.cli"), ("c.cli", "x/c.cli"), ("../x", "x/x")]
+    {
+        symlink(to, folder.at(link)).expect("a link");
+    }
+    symlink("../elsewhere", folder.at("x/folder.cli")).expect("a link");
+    assert_eq!(scenes_found(&folder, &["x"]), ["x/a.cli"]);
+    std::fs::remove_file(folder.at("x/a.cli")).expect("a link");
+    let call = folder.clisc(&["check", "x", "--format", "json"]);
+    assert_eq!(call.code, Some(0), "{}", call.stderr);
+    let warned = "warning: `x/c.cli` is a link that leads nowhere and is left out\n\
+                  warning: `x/gone.cli` is a link that leads nowhere and is left out\n";
+    assert!(call.stderr.starts_with(warned), "{}", call.stderr);
+    let document: serde_json::Value = serde_json::from_str(&call.stdout).expect("one document");
+    assert_eq!(document["notifications"][1]["path"], "x/gone.cli");
+    assert_eq!(document["notifications"][1]["severity"], "warning");
+    assert_eq!(folder.clisc(&["check", "x/gone.cli"]).code, Some(2), "named, it cannot be read");
+}
+
+/// A report for programs may not look whole when it is not.
+#[test]
+fn what_cannot_be_read_is_in_every_report_for_programs() {
+    let folder = Folder::with_scene("fov 60\n\n\nx\n");
+    for command in [&["check"][..], &["lint"], &["fmt", "--check"]] {
+        let call = |format: &str| {
+            let call = folder.clisc(&[command, &["missing file.cli", "a.cli", "--format", format]].concat());
+            assert_eq!(call.code, Some(2), "{command:?} {format}");
+            assert!(call.stderr.contains("error: cannot read `missing file.cli`: No such file"), "{}", call.stderr);
+            assert!(call.stdout.contains("a.cli"), "the others are told: {}", call.stdout);
+            call.stdout
+        };
+        let document = |format: &str| serde_json::from_str::<serde_json::Value>(&call(format)).expect("one document");
+        let json = document("json");
+        assert_eq!(json["notifications"][0]["severity"], "error");
+        assert_eq!(json["notifications"][0]["path"], "missing file.cli");
+        let run = &document("sarif")["runs"][0];
+        let invocation = &run["invocations"][0];
+        assert_eq!(invocation["executionSuccessful"], false);
+        let told = &invocation["toolExecutionNotifications"][0];
+        assert_eq!(told["level"], "error");
+        assert!(
+            told["message"]["text"].as_str().is_some_and(|text| text.starts_with("cannot read `missing file.cli`"))
+        );
+        let place = told.pointer("/locations/0/physicalLocation/artifactLocation/uri");
+        assert_eq!(place, Some(&"missing%20file.cli".into()));
+        let gitlab = document("gitlab");
+        assert_eq!(gitlab[0]["location"]["path"], "missing file.cli");
+        assert_eq!(gitlab[0]["severity"], "major");
+        assert!(
+            call("github").starts_with("::error file=missing file.cli,title=clisc::cannot read `missing file.cli`")
+        );
+    }
+    let sound = Folder::with_scene(&scene("a.png")).clisc(&["check", "a.cli", "--format", "sarif"]);
+    let document: serde_json::Value = serde_json::from_str(&sound.stdout).expect("one document");
+    assert_eq!(document["runs"][0]["invocations"][0]["executionSuccessful"], true);
 }
 
 #[test]

@@ -10,9 +10,9 @@ use std::fs;
 use std::path::Path;
 
 use clisc::diag::fix::apply;
-use clisc::diag::render::{Format, Report};
-use clisc::diag::{Diagnostic, Edit, Fix};
-use clisc::source::{LineIndex, Source};
+use clisc::diag::render::{Format, Notification, Report};
+use clisc::diag::{Diagnostic, Edit, Fix, codes};
+use clisc::source::{LineIndex, Source, Span};
 use clisc::{Compilation, compile};
 use serde_json::Value;
 
@@ -92,6 +92,48 @@ fn sarif_is_as_its_schema_says_and_its_places_are_those_of_the_text() {
     assert!(results.next().is_none());
 }
 
+#[test]
+fn what_no_scene_is_to_blame_for_is_in_every_format() {
+    let document = |format| -> Value {
+        let mut report = Report::begin(format, Vec::new()).expect("written to memory");
+        for notification in [
+            Notification::error(Some(Path::new("a b.cli")), "cannot read `a b.cli`"),
+            Notification::warning(None, "something else"),
+        ] {
+            report.notify(&notification).expect("written to memory");
+        }
+        serde_json::from_slice(&report.finish().expect("written to memory")).expect("one JSON document")
+    };
+    let (json, sarif, gitlab) = (document(Format::Json), document(Format::Sarif), document(Format::Gitlab));
+    assert_eq!(schema::violations(&schema_at("docs/schemas/diagnostics-v1.schema.json"), &json), [""; 0]);
+    assert_eq!(schema::violations(&schema_at("tests/schemas/sarif.schema.json"), &sarif), [""; 0]);
+    assert_eq!(json["notifications"].as_array().map(Vec::len), Some(2));
+    let told = &sarif["runs"][0]["invocations"][0]["toolExecutionNotifications"];
+    assert_eq!((&told[0]["level"], &told[1]["level"]), (&"error".into(), &"warning".into()));
+    assert_eq!((&gitlab[0]["severity"], &gitlab[1]["severity"]), (&"major".into(), &"minor".into()));
+    assert_ne!(gitlab[0]["fingerprint"], gitlab[1]["fingerprint"]);
+}
+
+/// GitHub refuses a run of more.
+#[test]
+fn sarif_holds_25000_results_and_says_how_many_more_there_were() {
+    let source = Source::new("a.cli", "fov 0\n");
+    let found = vec![Diagnostic::new(&codes::FOV_OUT_OF_RANGE, Span::new(4, 5), "x").label("x"); 9_000];
+    let mut report = Report::begin(Format::Sarif, Vec::new()).expect("written to memory");
+    for n_unlisted in [0, 7, 0] {
+        report.add(&source, &found, [n_unlisted, 0]).expect("written to memory");
+    }
+    let document: Value =
+        serde_json::from_slice(&report.finish().expect("written to memory")).expect("one JSON document");
+    let run = &document["runs"][0];
+    assert_eq!(run["results"].as_array().map(Vec::len), Some(25_000));
+    assert_eq!(run["properties"]["unlisted"], 2_007);
+    let invocation = &run["invocations"][0];
+    assert_eq!(invocation["executionSuccessful"], true);
+    let told = invocation["toolExecutionNotifications"][0]["message"]["text"].as_str().expect("a text");
+    assert!(told.starts_with("2007 findings left out: a run holds 25000 results"), "{told}");
+}
+
 /// Carries out replacements as a reader of SARIF would, by lines and columns.
 fn applied(source: &Source, replacements: &Value) -> String {
     let offset = |line: &Value, column: &Value| {
@@ -107,7 +149,7 @@ fn applied(source: &Source, replacements: &Value) -> String {
         let start = offset(&region["startLine"], &region["startColumn"]);
         let end = offset(&region["endLine"], &region["endColumn"]);
         let text = replacement["insertedContent"]["text"].as_str().unwrap_or_default();
-        Edit::replace(clisc::source::Span::new(start, end), text)
+        Edit::replace(Span::new(start, end), text)
     });
     apply(source.text(), [&Fix::safe("as read", edits.collect())]).text
 }

@@ -1,6 +1,8 @@
 //! `clisc.toml`: the text of one in, options out.
 //!
 //! ```toml
+//! exclude = ["drafts/"]     # what is left out where a folder is named, as .gitignore has it
+//!
 //! [lint]
 //! size = "1920x1080"        # of the image by which rules judge what is seen
 //!
@@ -43,19 +45,32 @@ impl std::error::Error for ConfigError {}
 /// # Errors
 /// When it is no TOML, or has a key, a rule, a level or a size that is none.
 pub fn parse_config(text: &str) -> Result<Options, ConfigError> {
-    let file: File = toml::from_str(text).map_err(|error| {
-        let position = error.span().map(|span| LineIndex::new(text).position(text, span.start as u32));
-        ConfigError { position, message: error.message().trim_end().replace('\n', "; ") }
-    })?;
+    let file = read(text)?;
     let mut options = Options::default();
     options.size = file.lint.size.0;
     file.lint.rules.0.into_iter().for_each(|(rule, level)| options.set_level(rule, level));
     Ok(options)
 }
 
+/// Reads which files below its folder a configuration leaves out: patterns as those of a .gitignore file.
+///
+/// # Errors
+/// As [`parse_config`].
+pub fn parse_exclude(text: &str) -> Result<Vec<String>, ConfigError> {
+    read(text).map(|file| file.exclude)
+}
+
+fn read(text: &str) -> Result<File, ConfigError> {
+    toml::from_str(text).map_err(|error| {
+        let position = error.span().map(|span| LineIndex::new(text).position(text, span.start as u32));
+        ConfigError { position, message: error.message().trim_end().replace('\n', "; ") }
+    })
+}
+
 #[derive(Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 struct File {
+    exclude: Vec<String>,
     lint: Lint,
 }
 
@@ -130,6 +145,11 @@ mod tests {
         assert_eq!(options.level(&codes::NO_FOV), Level::Off);
         assert_eq!(options.level(&codes::NO_WRITE), Level::Warning);
         assert_eq!(parse_config(""), Ok(Options::default()));
+        assert_eq!(
+            parse_exclude("exclude = [\"drafts/\", \"*-old.cli\"]\n"),
+            Ok(vec!["drafts/".into(), "*-old.cli".into()])
+        );
+        assert_eq!(parse_exclude("[lint]\n"), Ok(Vec::new()));
     }
 
     #[test]

@@ -16,7 +16,7 @@ mod registry;
 mod rules;
 mod sight;
 
-pub use config::{ConfigError, parse_config};
+pub use config::{ConfigError, parse_config, parse_exclude};
 pub use fixer::{FixedScene, fix_all};
 pub use options::{Level, Options, UnknownRule, find_rule};
 pub use registry::{RULES, Rule, all_codes, find, nearest};

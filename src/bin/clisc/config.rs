@@ -44,14 +44,39 @@ impl Configs {
 
 /// Reads the configuration for the scenes of a folder; the default if there is none.
 fn read_for(folder: &Path) -> anyhow::Result<Options> {
-    let Ok(folder) = fs::canonicalize(folder) else { return Ok(Options::default()) };
+    let Some(file) = find(folder)? else { return Ok(Options::default()) };
+    parse_config(&file.text).with_context(|| format!("`{}`", file.path().display()))
+}
+
+/// The configuration that counts in a folder, as it was read.
+#[derive(Debug)]
+pub struct ConfigFile {
+    /// The folder where it stands, all links followed.
+    pub folder: PathBuf,
+    /// What it says.
+    pub text: String,
+}
+
+impl ConfigFile {
+    /// Returns the path of the file.
+    pub fn path(&self) -> PathBuf {
+        self.folder.join(FILE_NAME)
+    }
+}
+
+/// Reads the configuration that counts in a folder, if there is one: the one in it, or in the nearest folder above.
+///
+/// # Errors
+/// When there is one that cannot be read.
+pub fn find(folder: &Path) -> anyhow::Result<Option<ConfigFile>> {
+    let Ok(folder) = fs::canonicalize(folder) else { return Ok(None) };
     for folder in folder.ancestors() {
         let path = folder.join(FILE_NAME);
         match fs::read_to_string(&path) {
-            Ok(text) => return parse_config(&text).with_context(|| format!("`{}`", path.display())),
+            Ok(text) => return Ok(Some(ConfigFile { folder: folder.to_owned(), text })),
             Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {}
             Err(error) => return Err(error).with_context(|| format!("cannot read `{}`", path.display())),
         }
     }
-    Ok(Options::default())
+    Ok(None)
 }

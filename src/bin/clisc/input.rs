@@ -1,7 +1,6 @@
 //! Finding and reading scenes.
 
 use std::collections::HashSet;
-use std::ffi::OsStr;
 use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
@@ -9,6 +8,8 @@ use std::path::{Path, PathBuf};
 use anyhow::Context;
 use clisc::source::{Source, SourceError};
 use rayon::prelude::*;
+
+use crate::walk::{self, Found};
 
 /// What messages call standard input.
 const STDIN_NAME: &str = "<stdin>";
@@ -72,58 +73,18 @@ fn batch_len(scenes: &[PathBuf]) -> usize {
     scenes.iter().take(MAX_BATCH.0).take_while(fits).count().max(1)
 }
 
-/// Returns the scenes that the arguments mean, each once, as far as folders can be read. Says what could not be.
-pub fn find_all_scenes(paths: &[PathBuf]) -> (Vec<PathBuf>, Vec<anyhow::Error>) {
+/// Returns the scenes that the arguments mean, each once, as far as they can be found: a path that is no folder means
+/// itself, a folder every scene [below](walk::scenes_below) it.
+pub fn find_all_scenes(paths: &[PathBuf]) -> Found {
     let mut seen = HashSet::new();
-    let (mut scenes, mut missed) = (Vec::new(), Vec::new());
+    let mut all = Found::default();
     for path in paths {
-        let (found, not_found) = find_scenes(path);
-        missed.extend(not_found);
+        let found = if path.is_dir() { walk::scenes_below(path) } else { Found::only(path) };
         let is_new = |path: &PathBuf| seen.insert(fs::canonicalize(path).unwrap_or_else(|_| path.clone()));
-        scenes.extend(found.into_iter().filter(is_new));
+        all.scenes.extend(found.scenes.into_iter().filter(is_new));
+        all.problems.extend(found.problems);
     }
-    (scenes, missed)
-}
-
-/// Returns the scenes that an argument means: itself, or every `.cli` file below the folder it names, as far as that can
-/// be read. Says what could not be.
-fn find_scenes(path: &Path) -> (Vec<PathBuf>, Vec<anyhow::Error>) {
-    if !path.is_dir() {
-        return (vec![path.to_owned()], Vec::new());
-    }
-    let (mut scenes, mut missed) = (Vec::new(), Vec::new());
-    walk(path, &mut scenes, &mut missed);
-    if scenes.is_empty() && missed.is_empty() {
-        missed.push(anyhow::anyhow!("there is no .cli file below `{}`", path.display()));
-    }
-    (scenes, missed)
-}
-
-/// Appends the scenes below a folder, sorted by name, and the folders that cannot be read; links to folders are not
-/// followed.
-fn walk(folder: &Path, scenes: &mut Vec<PathBuf>, missed: &mut Vec<anyhow::Error>) {
-    match list(folder) {
-        Ok(entries) => entries.into_iter().for_each(|(path, is_folder)| {
-            if is_folder {
-                walk(&path, scenes, missed);
-            } else if path.extension() == Some(OsStr::new("cli")) {
-                scenes.push(path);
-            }
-        }),
-        Err(error) => {
-            let message = format!("cannot read the folder `{}`", folder.display());
-            missed.push(anyhow::Error::from(error).context(message));
-        }
-    }
-}
-
-/// Returns what is in a folder, sorted by name, and whether it is a folder itself.
-fn list(folder: &Path) -> io::Result<Vec<(PathBuf, bool)>> {
-    let entries =
-        fs::read_dir(folder)?.map(|entry| entry.and_then(|entry| Ok((entry.path(), entry.file_type()?.is_dir()))));
-    let mut entries = entries.collect::<Result<Vec<_>, _>>()?;
-    entries.sort();
-    Ok(entries)
+    all
 }
 
 fn read_file(path: &Path) -> anyhow::Result<Vec<u8>> {

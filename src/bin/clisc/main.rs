@@ -12,9 +12,11 @@ mod interrupt;
 mod lsp;
 mod outcome;
 mod print;
+mod problems;
 mod progress;
 mod threads;
 mod version;
+mod walk;
 
 use std::process::ExitCode;
 

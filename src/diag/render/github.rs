@@ -5,8 +5,9 @@
 
 use std::io::{self, Write};
 
+use crate::diag::Diagnostic;
+use crate::diag::render::Notification;
 use crate::diag::render::place::ends;
-use crate::diag::{Diagnostic, Severity};
 use crate::source::Source;
 
 /// Writes `::error file=…,line=…,col=…::message` for each diagnostic.
@@ -18,10 +19,7 @@ pub fn render_github(source: &Source, diagnostics: &[Diagnostic], out: &mut dyn 
 }
 
 fn write_line(source: &Source, diagnostic: &Diagnostic, out: &mut dyn Write) -> io::Result<()> {
-    let command = match diagnostic.severity() {
-        Severity::Error => "error",
-        Severity::Warning => "warning",
-    };
+    let command = diagnostic.severity().word();
     let [start, end] = ends(source, diagnostic.primary.span);
     write!(out, "::{command} file={},line={},endLine={}", property(source.name()), start.line, end.line)?;
     if start.line == end.line {
@@ -31,6 +29,14 @@ fn write_line(source: &Source, diagnostic: &Diagnostic, out: &mut dyn Write) -> 
     let help = diagnostic.help.as_ref().map_or_else(String::new, |help| format!("\nhelp: {help}"));
     let message = data(&format!("{}{help}", diagnostic.message));
     writeln!(out, ",title={}::{message}", property(&diagnostic.code.label()))
+}
+
+/// Writes the annotation of a notification, at its file if it has one.
+pub(super) fn write_notification(notification: &Notification, out: &mut dyn Write) -> io::Result<()> {
+    let Notification { severity, path, message } = notification;
+    let file = path.as_ref().map_or_else(String::new, |path| format!(" file={},", property(path)));
+    let space = if file.is_empty() { " " } else { "" };
+    writeln!(out, "::{}{file}{space}title={}::{}", severity.word(), env!("CARGO_PKG_NAME"), data(message))
 }
 
 /// Escapes the text of a message.

@@ -7,7 +7,8 @@ use std::io::{self, Write};
 
 use serde::Serialize;
 
-use crate::diag::render::place::{Fingerprints, Items, ends};
+use crate::diag::render::Notification;
+use crate::diag::render::place::{Fingerprints, Items, ends, fingerprint};
 use crate::diag::{Diagnostic, Severity};
 use crate::source::{Position, Source};
 
@@ -39,6 +40,23 @@ impl<W: Write> GitlabReport<W> {
             self.issues.write(&issue, &mut self.out)?;
         }
         Ok(())
+    }
+
+    /// Writes a notification, as an issue of the first line of its file.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn notify(&mut self, notification: &Notification) -> io::Result<()> {
+        let Notification { severity, path, message } = notification;
+        let path = path.as_deref().unwrap_or(".");
+        let issue = Issue {
+            description: message,
+            check_name: env!("CARGO_PKG_NAME"),
+            fingerprint: fingerprint(&[path, message]),
+            severity: word(*severity),
+            location: Location::new(path, [Position { line: 1, column: 1 }; 2]),
+        };
+        self.issues.write(&issue, &mut self.out)
     }
 
     /// Writes the end of the document and gives the writer back.
@@ -82,23 +100,32 @@ struct Positions {
     end: Position,
 }
 
+/// Returns what GitLab calls a severity.
+fn word(severity: Severity) -> &'static str {
+    match severity {
+        Severity::Error => "major",
+        Severity::Warning => "minor",
+    }
+}
+
+impl<'a> Location<'a> {
+    fn new(path: &'a str, [begin, end]: [Position; 2]) -> Self {
+        Self {
+            path: path.strip_prefix("./").unwrap_or(path),
+            lines: Lines { begin: begin.line, end: end.line },
+            positions: Positions { begin, end },
+        }
+    }
+}
+
 impl<'a> Issue<'a> {
     fn new(source: &'a Source, diagnostic: &'a Diagnostic, fingerprint: String) -> Self {
-        let severity = match diagnostic.severity() {
-            Severity::Error => "major",
-            Severity::Warning => "minor",
-        };
-        let [begin, end] = ends(source, diagnostic.primary.span);
         Self {
             description: &diagnostic.message,
             check_name: diagnostic.code.name.unwrap_or(diagnostic.code.id),
             fingerprint,
-            severity,
-            location: Location {
-                path: source.name().strip_prefix("./").unwrap_or(source.name()),
-                lines: Lines { begin: begin.line, end: end.line },
-                positions: Positions { begin, end },
-            },
+            severity: word(diagnostic.severity()),
+            location: Location::new(source.name(), ends(source, diagnostic.primary.span)),
         }
     }
 }

@@ -7,6 +7,7 @@ use std::io::{self, Write};
 
 use serde::Serialize;
 
+use crate::diag::render::Notification;
 use crate::diag::render::place::{Items, ends};
 use crate::diag::{Diagnostic, Edit, Fix, Label, Safety, Severity};
 use crate::source::{Position, Source, Span};
@@ -21,6 +22,7 @@ pub struct JsonReport<W: Write> {
     listed: Items,
     n_errors: usize,
     n_warnings: usize,
+    notifications: Vec<Notification>,
 }
 
 impl<W: Write> JsonReport<W> {
@@ -30,7 +32,7 @@ impl<W: Write> JsonReport<W> {
     /// Those of `out`.
     pub fn begin(mut out: W) -> io::Result<Self> {
         write!(out, "{{\n  \"version\": {VERSION},\n  \"diagnostics\": [")?;
-        Ok(Self { out, listed: Items::default(), n_errors: 0, n_warnings: 0 })
+        Ok(Self { out, listed: Items::default(), n_errors: 0, n_warnings: 0, notifications: Vec::new() })
     }
 
     /// Writes the diagnostics of one source.
@@ -53,6 +55,11 @@ impl<W: Write> JsonReport<W> {
         }
     }
 
+    /// Takes a notification, which is written at the end.
+    pub fn notify(&mut self, notification: Notification) {
+        self.notifications.push(notification);
+    }
+
     /// Writes the end of the document, with the counts of all that was found, and gives the writer back.
     ///
     /// # Errors
@@ -62,7 +69,9 @@ impl<W: Write> JsonReport<W> {
         let n_unlisted = n_errors + n_warnings - self.listed.n();
         self.listed.close(&mut self.out)?;
         writeln!(self.out, ",\n  \"errors\": {n_errors},\n  \"warnings\": {n_warnings},")?;
-        writeln!(self.out, "  \"unlisted\": {n_unlisted}\n}}")?;
+        writeln!(self.out, "  \"unlisted\": {n_unlisted},")?;
+        let notifications = serde_json::to_string(&self.notifications)?;
+        writeln!(self.out, "  \"notifications\": {notifications}\n}}")?;
         Ok(self.out)
     }
 }

@@ -2,12 +2,14 @@
 //!
 //! Six forms of one list: [`render_human`] draws the places, [`render_short`] gives one line each; for programs there is
 //! [`JsonReport`], a document of our own, [`SarifReport`], [`render_github`] and [`GitlabReport`]. [`Report`] is any of
-//! them. All show the message as it is; none decides what is worth showing.
+//! them. All show the message as it is; none decides what is worth showing. What no scene is to blame for is a
+//! [`Notification`]: a report in a form for programs holds it too, so that none looks whole that is not.
 
 mod github;
 mod gitlab;
 mod human;
 mod json;
+mod notification;
 mod place;
 mod report;
 mod sarif;
@@ -17,6 +19,7 @@ pub use github::render_github;
 pub use gitlab::GitlabReport;
 pub use human::{Color, render_human};
 pub use json::{JsonReport, render_json};
+pub use notification::Notification;
 pub use report::{Format, Report};
 pub use sarif::SarifReport;
 pub use short::render_short;

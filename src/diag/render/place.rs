@@ -52,6 +52,11 @@ fn line_at<'s>(lines: &LineIndex, text: &'s str, offset: u32) -> &'s str {
     &text[lines.line_span(text, lines.line_of(offset)).range()]
 }
 
+/// Returns the fingerprint of something that has no line.
+pub(super) fn fingerprint(parts: &[&str]) -> String {
+    format!("{:016x}", fnv(FNV_BASIS, parts.iter().flat_map(|part| part.bytes().chain([0]))))
+}
+
 /// The state of the hash before the first byte.
 const FNV_BASIS: u64 = 0xCBF2_9CE4_8422_2325;
 

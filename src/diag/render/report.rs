@@ -2,7 +2,9 @@
 
 use std::io::{self, Write};
 
-use crate::diag::render::{Color, GitlabReport, JsonReport, SarifReport, render_github, render_human, render_short};
+use crate::diag::render::{
+    Color, GitlabReport, JsonReport, Notification, SarifReport, github, render_github, render_human, render_short,
+};
 use crate::diag::{Diagnostic, Severity};
 use crate::source::Source;
 
@@ -72,6 +74,21 @@ impl<W: Write> Report<W> {
             }
             Form::Github(out) => render_github(source, diagnostics, out)?,
             Form::Gitlab(report) => report.add(source, diagnostics)?,
+        }
+        Ok(())
+    }
+
+    /// Writes a notification, or keeps it for the end. The forms for people have no room for it: it is printed elsewhere.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn notify(&mut self, notification: &Notification) -> io::Result<()> {
+        match &mut self.0 {
+            Form::Human(..) | Form::Short(_) => {}
+            Form::Json(report) => report.notify(notification.clone()),
+            Form::Sarif(report) => report.notify(notification.clone()),
+            Form::Github(out) => github::write_notification(notification, out)?,
+            Form::Gitlab(report) => report.notify(notification)?,
         }
         Ok(())
     }

@@ -11,9 +11,17 @@ use std::io::{self, Write};
 use serde::Serialize;
 use serde_json::{Value, json};
 
+use crate::diag::render::Notification;
 use crate::diag::render::place::{Fingerprints, Items, ends, uri};
+use crate::diag::words::counted;
 use crate::diag::{Code, Diagnostic, Edit, Fix, Label, Severity};
 use crate::source::{Source, Span};
+
+/// The most results of a run that GitHub takes; it refuses the document of a longer one.
+///
+/// # Source
+/// "SARIF support for code scanning", docs.github.com: "Results per run".
+const MAX_RESULTS: usize = 25_000;
 
 /// A document that grows a source at a time.
 #[derive(Debug)]
@@ -23,6 +31,7 @@ pub struct SarifReport<W: Write> {
     /// The codes found so far, in the order in which they were.
     codes: Vec<&'static Code>,
     n_unlisted: usize,
+    notifications: Vec<Notification>,
 }
 
 impl<W: Write> SarifReport<W> {
@@ -34,16 +43,18 @@ impl<W: Write> SarifReport<W> {
         const SCHEMA: &str = "https://json.schemastore.org/sarif-2.1.0.json";
         write!(out, "{{\n  \"$schema\": \"{SCHEMA}\",\n  \"version\": \"2.1.0\",\n  \"runs\": [{{\n")?;
         write!(out, "  \"columnKind\": \"unicodeCodePoints\",\n  \"results\": [")?;
-        Ok(Self { out, results: Items::default(), codes: Vec::new(), n_unlisted: 0 })
+        Ok(Self { out, results: Items::default(), codes: Vec::new(), n_unlisted: 0, notifications: Vec::new() })
     }
 
-    /// Writes the diagnostics of one source.
+    /// Writes the diagnostics of one source, as far as the run may hold them.
     ///
     /// # Errors
     /// Those of the writer.
     pub fn add(&mut self, source: &Source, diagnostics: &[Diagnostic]) -> io::Result<()> {
         let mut fingerprints = Fingerprints::default();
-        for diagnostic in diagnostics {
+        let n_listed = diagnostics.len().min(MAX_RESULTS - self.results.n());
+        self.n_unlisted += diagnostics.len() - n_listed;
+        for diagnostic in &diagnostics[..n_listed] {
             let rule_idx = self.rule_idx(diagnostic.code);
             let result = result(source, diagnostic, rule_idx, fingerprints.next(source, diagnostic));
             self.results.write(&result, &mut self.out)?;
@@ -56,12 +67,32 @@ impl<W: Write> SarifReport<W> {
         self.n_unlisted += n;
     }
 
+    /// Takes a notification, which is written at the end.
+    pub fn notify(&mut self, notification: Notification) {
+        self.notifications.push(notification);
+    }
+
+    /// Returns the notification that findings are left out, if there are any.
+    fn unlisted(&self) -> Option<Notification> {
+        (self.n_unlisted > 0).then(|| {
+            let message = format!(
+                "{} left out: a run holds {MAX_RESULTS} results, and of one scene the first are listed",
+                counted(self.n_unlisted, "finding")
+            );
+            Notification::warning(None, message)
+        })
+    }
+
     /// Writes the end of the document and gives the writer back.
     ///
     /// # Errors
     /// Those of the writer.
     pub fn finish(mut self) -> io::Result<W> {
         self.results.close(&mut self.out)?;
+        self.notifications.extend(self.unlisted());
+        let is_whole = self.notifications.iter().all(|notification| notification.severity != Severity::Error);
+        let notifications: Vec<_> = self.notifications.iter().map(notification).collect();
+        let invocation = json!({ "executionSuccessful": is_whole, "toolExecutionNotifications": notifications });
         let rules: Vec<_> = self.codes.iter().map(|code| rule(code)).collect();
         let driver = json!({
             "name": env!("CARGO_PKG_NAME"),
@@ -69,6 +100,7 @@ impl<W: Write> SarifReport<W> {
             "shortDescription": { "text": env!("CARGO_PKG_DESCRIPTION") },
             "rules": rules,
         });
+        write!(self.out, ",\n  \"invocations\": [{invocation}]")?;
         write!(self.out, ",\n  \"properties\": {{ \"unlisted\": {} }}", self.n_unlisted)?;
         writeln!(self.out, ",\n  \"tool\": {{ \"driver\": {driver} }}\n  }}]\n}}")?;
         Ok(self.out)
@@ -93,6 +125,15 @@ fn rule(code: &Code) -> Value {
         rule["name"] = name.into();
     }
     rule
+}
+
+fn notification(notification: &Notification) -> Value {
+    let mut value = json!({ "level": level(notification.severity), "message": { "text": notification.message } });
+    if let Some(path) = &notification.path {
+        let location = json!({ "physicalLocation": { "artifactLocation": { "uri": uri(path) } } });
+        value["locations"] = json!([location]);
+    }
+    value
 }
 
 fn level(severity: Severity) -> &'static str {

@@ -11,6 +11,9 @@ use crate::args::ReportFormat;
 #[command(after_help = FMT_EXAMPLES)]
 pub struct FmtArgs {
     /// Scenes; a folder means every .cli file below it, - formats standard input to standard output.
+    ///
+    /// Below a folder names that begin with a dot, what .gitignore names and what `exclude` in clisc.toml names are left
+    /// out. A path that is named here is always read.
     #[arg(value_name = "PATH", required = true)]
     pub paths: Vec<PathBuf>,
     /// Save nothing; list the scenes that would change, and exit with 1 when there are any.

@@ -11,6 +11,9 @@ use crate::args::ReportFormat;
 #[command(after_help = LINT_EXAMPLES)]
 pub struct LintArgs {
     /// Scenes; a folder means every .cli file below it, - is standard input.
+    ///
+    /// Below a folder names that begin with a dot, what .gitignore names and what `exclude` in clisc.toml names are left
+    /// out. A path that is named here is always read.
     #[arg(value_name = "PATH", required = true)]
     pub paths: Vec<PathBuf>,
     /// Carry out the safe fixes and save the scenes; of standard input, print it.

@@ -13,18 +13,20 @@ use clisc::source::Source;
 use crate::args::CheckArgs;
 use crate::config::Configs;
 use crate::outcome::Outcome;
+use crate::problems::{self, Problems};
+use crate::walk::Found;
 use crate::{input, print};
 
 /// Checks scenes, on all cores and told of in the order given. What is wrong with them is the result and goes to standard
 /// output; a scene that cannot be read does not keep the others from being checked.
 pub fn run(args: &CheckArgs) -> anyhow::Result<ExitCode> {
     let mut tally = Tally::default();
-    let (scenes, missed) = input::find_all_scenes(&args.paths);
-    missed.iter().for_each(|error| tally.miss(error));
+    let Found { scenes, problems } = input::find_all_scenes(&args.paths);
     let mut report = print::report(args.format)?;
+    problems.iter().try_for_each(|problem| tally.problems.tell(problem, Some(&mut report)))?;
     let configs = Configs::default();
     let checked = |path: &Path| check(path, &configs);
-    input::for_each_scene(&scenes, checked, |_, checked| {
+    input::for_each_scene(&scenes, checked, |path, checked| {
         match checked {
             Ok((source, compilation)) => {
                 tally.add(&compilation);
@@ -32,7 +34,7 @@ pub fn run(args: &CheckArgs) -> anyhow::Result<ExitCode> {
                 report.add(&source, &compilation.diagnostics, n_unlisted).context(print::CANNOT_WRITE)?;
                 print::unlisted_to_stderr(&source, &compilation);
             }
-            Err(error) => tally.miss(&error),
+            Err(error) => tally.problems.tell(&problems::error(Some(path), &error), Some(&mut report))?,
         }
         Ok(())
     })?;
@@ -55,7 +57,7 @@ struct Tally {
     n_scenes: usize,
     n_errors: usize,
     n_warnings: usize,
-    has_missed: bool,
+    problems: Problems,
 }
 
 impl Tally {
@@ -65,12 +67,6 @@ impl Tally {
         self.n_warnings += compilation.n_warnings;
     }
 
-    /// Tells of a scene that could not be read.
-    fn miss(&mut self, error: &anyhow::Error) {
-        self.has_missed = true;
-        print::to_stderr(&format!("error: {error:#}\n"));
-    }
-
     fn summary(&self) -> String {
         let scenes = counted(self.n_scenes, "scene");
         format!("{scenes} checked: {}, {}\n", counted(self.n_errors, "error"), counted(self.n_warnings, "warning"))
@@ -78,7 +74,7 @@ impl Tally {
 
     fn outcome(&self, deny_warnings: bool) -> Outcome {
         let n_bad = self.n_errors + if deny_warnings { self.n_warnings } else { 0 };
-        match (self.has_missed, n_bad) {
+        match (self.problems.has_error(), n_bad) {
             (true, _) => Outcome::Environment,
             (false, 0) => Outcome::Fine,
             (false, _) => Outcome::SceneErrors,

@@ -13,15 +13,17 @@ use clisc::source::Source;
 use crate::args::FmtArgs;
 use crate::diff::Diff;
 use crate::outcome::Outcome;
+use crate::problems::{self, Problems};
+use crate::walk::Found;
 use crate::{disk, input, print};
 
 /// Formats scenes, on all cores and told of in the order given. A scene that cannot be read or saved does not keep the
 /// others from being formatted.
 pub fn run(args: &FmtArgs) -> anyhow::Result<ExitCode> {
     let mut tally = Tally::default();
-    let (scenes, missed) = input::find_all_scenes(&args.paths);
-    missed.iter().for_each(|error| tally.miss(error));
+    let Found { scenes, problems } = input::find_all_scenes(&args.paths);
     let mut report = args.format.map(print::report).transpose()?;
+    problems.iter().try_for_each(|problem| tally.problems.tell(problem, report.as_mut()))?;
     let formatted = |path: &Path| format_scene(path, args);
     input::for_each_scene(&scenes, formatted, |path, result| {
         match result {
@@ -32,7 +34,7 @@ pub fn run(args: &FmtArgs) -> anyhow::Result<ExitCode> {
                 }
                 tally.add(&scene);
             }
-            Err(error) => tally.miss(&error),
+            Err(error) => tally.problems.tell(&problems::error(Some(path), &error), report.as_mut())?,
         }
         Ok(())
     })?;
@@ -94,19 +96,13 @@ impl Scene {
 struct Tally {
     n_scenes: usize,
     n_changed: usize,
-    has_missed: bool,
+    problems: Problems,
 }
 
 impl Tally {
     fn add(&mut self, scene: &Scene) {
         self.n_scenes += 1;
         self.n_changed += usize::from(scene.has_changed);
-    }
-
-    /// Tells of a scene that could not be read or saved.
-    fn miss(&mut self, error: &anyhow::Error) {
-        self.has_missed = true;
-        print::to_stderr(&format!("error: {error:#}\n"));
     }
 
     fn summary(&self, args: &FmtArgs) -> String {
@@ -116,7 +112,7 @@ impl Tally {
     }
 
     fn outcome(&self, args: &FmtArgs) -> Outcome {
-        match (self.has_missed, args.check && self.n_changed > 0) {
+        match (self.problems.has_error(), args.check && self.n_changed > 0) {
             (true, _) => Outcome::Environment,
             (false, true) => Outcome::SceneErrors,
             (false, false) => Outcome::Fine,

@@ -15,6 +15,8 @@ use crate::args::LintArgs;
 use crate::config::Configs;
 use crate::diff::Diff;
 use crate::outcome::Outcome;
+use crate::problems::{self, Problems};
+use crate::walk::Found;
 use crate::{disk, input, print};
 
 /// Lints scenes, on all cores and told of in the order given. A scene that cannot be read or saved does not keep the others
@@ -24,31 +26,29 @@ pub fn run(args: &LintArgs) -> anyhow::Result<ExitCode> {
     // A name that is no rule is told before anything is read.
     choose(args, &mut Options::default())?;
     let mut tally = Tally::default();
-    let (scenes, missed) = input::find_all_scenes(&args.paths);
-    missed.iter().for_each(|error| tally.miss(error));
-    let mut report = print::report(args.format)?;
-    let linted = |path: &Path| lint_scene(path, args, &configs);
+    let Found { scenes, problems } = input::find_all_scenes(&args.paths);
     let shows_text = args.diff || (args.fix && scenes.iter().any(|path| input::is_stdin(path)));
+    let mut report = if shows_text { None } else { Some(print::report(args.format)?) };
+    problems.iter().try_for_each(|problem| tally.problems.tell(problem, report.as_mut()))?;
+    let linted = |path: &Path| lint_scene(path, args, &configs);
     input::for_each_scene(&scenes, linted, |path, result| {
         match result {
             Ok(scene) => {
                 scene.show(path, args)?;
                 tally.add(&scene);
                 let Scene { source, found, .. } = &scene;
-                if !shows_text {
+                if let Some(report) = &mut report {
                     let n_unlisted = [Severity::Error, Severity::Warning].map(|severity| found.n_unlisted(severity));
                     report.add(source, &found.diagnostics, n_unlisted).context(print::CANNOT_WRITE)?;
                     print::unlisted_to_stderr(source, found);
                 }
             }
-            Err(error) => tally.miss(&error),
+            Err(error) => tally.problems.tell(&problems::error(Some(path), &error), report.as_mut())?,
         }
         Ok(())
     })?;
-    if shows_text {
-        drop(report)
-    } else {
-        print::finish(report)?
+    if let Some(report) = report {
+        print::finish(report)?;
     }
     print::to_stderr(&tally.summary(args));
     Ok(tally.outcome().into())
@@ -121,7 +121,7 @@ struct Tally {
     n_warnings: usize,
     n_fixed: usize,
     n_fixable: usize,
-    has_missed: bool,
+    problems: Problems,
 }
 
 impl Tally {
@@ -135,12 +135,6 @@ impl Tally {
         if !has_error {
             self.n_fixable += scene.found.diagnostics.iter().filter(|found| is_fixable(&found.fixes)).count();
         }
-    }
-
-    /// Tells of a scene that could not be read or saved.
-    fn miss(&mut self, error: &anyhow::Error) {
-        self.has_missed = true;
-        print::to_stderr(&format!("error: {error:#}\n"));
     }
 
     fn summary(&self, args: &LintArgs) -> String {
@@ -159,7 +153,7 @@ impl Tally {
     }
 
     fn outcome(&self) -> Outcome {
-        match (self.has_missed, self.n_errors + self.n_warnings) {
+        match (self.problems.has_error(), self.n_errors + self.n_warnings) {
             (true, _) => Outcome::Environment,
             (false, 0) => Outcome::Fine,
             (false, _) => Outcome::SceneErrors,
