@@ -60,14 +60,51 @@ fn check_tells_programs_what_would_change() {
 fn diff_is_a_patch() {
     let folder = Folder::with_scene(LOOSE);
     let call = folder.clisc(&["fmt", "--diff", "a.cli"]);
-    assert_eq!(call.code, Some(0));
+    assert_eq!(call.code, Some(1));
     assert_eq!(
         call.stdout,
-        "--- a.cli\n+++ a.cli\n@@ -1,5 +1,4 @@\n-  fov 60 # wide\n-background .1 0 0\n-\n-\n-write a.png\n\\ No newline at end \
+        "--- a/a.cli\n+++ b/a.cli\n@@ -1,5 +1,4 @@\n-  fov 60 # wide\n-background .1 0 0\n-\n-\n-write a.png\n\\ No newline at end \
          of file\n+fov        60  # wide\n+background 0.1 0 0\n+\n+write a.png\n"
     );
     assert_eq!(folder.clisc(&["fmt", "--diff", "--check", "a.cli"]).code, Some(1));
     assert_eq!(folder.bytes("a.cli"), LOOSE.as_bytes());
+    folder.put("a.cli", TIDY);
+    assert_eq!(folder.clisc(&["fmt", "--diff", "a.cli"]).code, Some(0), "there is no difference");
+}
+
+/// Whatever a file is called, `patch` and git find it.
+#[test]
+fn a_diff_can_be_applied() {
+    use std::io::Write;
+    use std::process::{Command, Stdio};
+
+    const NAMES: [&str; 6] =
+        ["a.cli", "deep/a b.cli", "tab\there.cli", "quo\"te.cli", "back\\slash.cli", "\u{e9}\u{4e16}.cli"];
+    for (program, args) in [("patch", &["-p1", "--quiet"][..]), ("git", &["apply"])] {
+        let folder = Folder::new();
+        NAMES.iter().for_each(|name| folder.put(name, LOOSE));
+        for command in [&["fmt", "--diff"][..], &["lint", "--diff", "--select", "repeated-setting"]] {
+            let mut call = folder.clisc(&[command, &["."]].concat());
+            if command[0] == "lint" {
+                NAMES.iter().for_each(|name| folder.put(name, TIDY.replace("write", "fov 60\nwrite")));
+                call = folder.clisc(&[command, &["."]].concat());
+            }
+            assert_eq!(call.code, Some(1), "{}", call.stderr);
+            folder.put("patch", &call.stdout);
+            let mut apply = Command::new(program);
+            apply
+                .args(args)
+                .current_dir(folder.at("."))
+                .stdin(std::fs::File::open(folder.at("patch")).expect("a file"));
+            let Ok(output) = apply.stdout(Stdio::piped()).stderr(Stdio::piped()).output() else {
+                let _ = writeln!(std::io::stderr(), "\nSKIPPED: there is no {program} here");
+                break;
+            };
+            assert!(output.status.success(), "{program}: {output:?}\n{}", call.stdout);
+            let is_tidy = |name: &&str| folder.bytes(name) == TIDY.as_bytes();
+            assert!(NAMES.iter().all(is_tidy), "{program}: {}", call.stdout);
+        }
+    }
 }
 
 /// Blank lines that go away at both ends and in the middle, changes far apart and side by side.

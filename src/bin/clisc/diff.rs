@@ -1,6 +1,7 @@
 //! Unified diffs, as `patch` reads them.
 
 use std::io::{self, Write};
+use std::path::Path;
 
 use clisc::format::Piece;
 use clisc::source::Source;
@@ -42,13 +43,18 @@ impl<'t> Diff<'t> {
         Self { old, new, ops }
     }
 
-    /// Writes the diff; nothing when nothing has changed.
-    pub fn write(&self, name: &str, out: &mut dyn Write) -> io::Result<()> {
+    /// Writes the diff of the file at `path`, as git does: `patch -p1` and `git apply` take it. Writes nothing when
+    /// nothing has changed.
+    pub fn write(&self, path: &Path, out: &mut dyn Write) -> io::Result<()> {
         let hunks = group_diff_ops(self.ops.clone(), CONTEXT);
         if hunks.is_empty() {
             return Ok(());
         }
-        write!(out, "--- {name}\n+++ {name}\n")?;
+        for (mark, folder) in [("---", "a/"), ("+++", "b/")] {
+            write!(out, "{mark} ")?;
+            out.write_all(&file_name(folder, path))?;
+            out.write_all(b"\n")?;
+        }
         for hunk in hunks {
             let (Some(first), Some(last)) = (hunk.first(), hunk.last()) else { continue };
             let old = Extent { start: first.old_range().start, end: last.old_range().end };
@@ -104,6 +110,41 @@ fn lines_of(text: &[u8]) -> Vec<&[u8]> {
     text.split_inclusive(|&byte| byte == b'\n').collect()
 }
 
+/// Returns the name of a file below a folder as git writes it in the head of a diff: in quotes, with escapes, when it has
+/// bytes beyond ASCII or with a meaning, and followed by a tab when it has blanks, so that `patch` sees where it ends.
+///
+/// # Source
+/// `core.quotePath` in git-config(1).
+fn file_name(folder: &str, path: &Path) -> Vec<u8> {
+    let path = path.as_os_str().as_encoded_bytes();
+    let path = path.strip_prefix(b"./").or(path.strip_prefix(b"/")).unwrap_or(path);
+    let is_plain = |byte: &u8| matches!(byte, b' '..=b'~') && !matches!(byte, b'"' | b'\\');
+    let mut name = folder.as_bytes().to_vec();
+    if path.iter().all(is_plain) {
+        name.extend(path);
+    } else {
+        name.insert(0, b'"');
+        path.iter().for_each(|&byte| push_escaped(byte, &mut name));
+        name.push(b'"');
+    }
+    if path.contains(&b' ') {
+        name.push(b'\t');
+    }
+    name
+}
+
+/// Appends a byte of a quoted name.
+fn push_escaped(byte: u8, name: &mut Vec<u8>) {
+    match byte {
+        b'\n' => name.extend(b"\\n"),
+        b'\t' => name.extend(b"\\t"),
+        b'\r' => name.extend(b"\\r"),
+        b'"' | b'\\' => name.extend([b'\\', byte]),
+        b' '..=b'~' => name.push(byte),
+        _ => name.extend(format!("\\{byte:03o}").bytes()),
+    }
+}
+
 /// The lines of a hunk, as its head tells them.
 struct Extent {
     start: usize,
@@ -117,6 +158,26 @@ impl std::fmt::Display for Extent {
             0 => write!(f, "{},0", self.start),
             1 => write!(f, "{}", self.start + 1),
             n => write!(f, "{},{n}", self.start + 1),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_stand_as_git_writes_them() {
+        for (name, expected) in [
+            ("x/a.cli", "b/x/a.cli"),
+            ("./a.cli", "b/a.cli"),
+            ("/tmp/a.cli", "b/tmp/a.cli"),
+            ("a b.cli", "b/a b.cli\t"),
+            ("a\tb.cli", "\"b/a\\tb.cli\""),
+            ("a\"b \\.cli", "\"b/a\\\"b \\\\.cli\"\t"),
+            ("é.cli", "\"b/\\303\\251.cli\""),
+        ] {
+            assert_eq!(String::from_utf8(file_name("b/", Path::new(name))).expect("ASCII"), expected);
         }
     }
 }

@@ -37,6 +37,11 @@ pub fn is_stdin(path: &Path) -> bool {
     path == Path::new("-")
 }
 
+/// Returns the name by which other programs find a scene, as far as it has one.
+pub fn file_name<'a>(source: &'a Source, path: &'a Path) -> &'a Path {
+    if is_stdin(path) { Path::new(source.name()) } else { path }
+}
+
 /// How many scenes are in memory at a time, and how many bytes of them.
 const MAX_BATCH: (usize, u64) = (32, 64 << 20);
 

@@ -22,7 +22,7 @@ pub struct FmtArgs {
     /// How --check shows what would change; without it the scenes are listed, one a line.
     #[arg(long, value_enum, requires = "check")]
     pub format: Option<ReportFormat>,
-    /// Save nothing; show what would change, as patch reads it.
+    /// Save nothing; show what would change, as patch -p1 reads it, and exit with 1 when that is anything.
     #[arg(long)]
     pub diff: bool,
 }

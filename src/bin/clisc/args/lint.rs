@@ -19,7 +19,7 @@ pub struct LintArgs {
     /// Carry out the safe fixes and save the scenes; of standard input, print it.
     #[arg(long)]
     pub fix: bool,
-    /// Save nothing; show what --fix would change, as patch reads it.
+    /// Save nothing; show what --fix would change, as patch -p1 reads it, and exit with 1 when that is anything.
     #[arg(long)]
     pub diff: bool,
     /// Check these rules alone, by name or code.
@@ -41,7 +41,7 @@ Examples:
   clisc lint scenes --ignore below-pixel,L0501
   clisc explain unused-surface                 why a rule is one
 
-Exit codes: 0 nothing found, 1 something was, 2 wrong usage or a fault outside the scene.
+Exit codes: 0 nothing found, 1 something was (with --diff: or would change), 2 wrong usage or a fault outside the scene.
 
 `# clisc: allow(RULE)` behind a command, or on a line above it, allows a finding there. `clisc.toml`, in the folder of the
 scene or one above, sets levels: docs/lint.md has every rule and the whole of the file.";

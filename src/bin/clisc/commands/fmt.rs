@@ -82,7 +82,10 @@ impl Scene {
             let mut out = print::stdout();
             let old = self.source.original_bytes();
             let diff = Diff::of_changes(&self.source, &changes(&self.source), &old, &self.formatted);
-            return diff.write(self.source.name(), &mut out).and_then(|()| out.flush()).context(print::CANNOT_WRITE);
+            return diff
+                .write(input::file_name(&self.source, path), &mut out)
+                .and_then(|()| out.flush())
+                .context(print::CANNOT_WRITE);
         }
         if args.check && self.has_changed {
             return print::to_stdout(&format!("{}\n", self.source.name()));
@@ -112,7 +115,7 @@ impl Tally {
     }
 
     fn outcome(&self, args: &FmtArgs) -> Outcome {
-        match (self.problems.has_error(), args.check && self.n_changed > 0) {
+        match (self.problems.has_error(), (args.check || args.diff) && self.n_changed > 0) {
             (true, _) => Outcome::Environment,
             (false, true) => Outcome::SceneErrors,
             (false, false) => Outcome::Fine,

@@ -51,7 +51,7 @@ pub fn run(args: &LintArgs) -> anyhow::Result<ExitCode> {
         print::finish(report)?;
     }
     print::to_stderr(&tally.summary(args));
-    Ok(tally.outcome().into())
+    Ok(tally.outcome(args).into())
 }
 
 /// A scene that has been linted.
@@ -103,7 +103,10 @@ impl Scene {
         if args.diff {
             let Some(original) = &self.original else { return Ok(()) };
             let diff = Diff::of_texts(original, self.source.text().as_bytes());
-            return diff.write(self.source.name(), &mut out).and_then(|()| out.flush()).context(print::CANNOT_WRITE);
+            return diff
+                .write(input::file_name(&self.source, path), &mut out)
+                .and_then(|()| out.flush())
+                .context(print::CANNOT_WRITE);
         }
         if args.fix && input::is_stdin(path) {
             let text = self.source.original_bytes();
@@ -120,6 +123,7 @@ struct Tally {
     n_errors: usize,
     n_warnings: usize,
     n_fixed: usize,
+    n_changed: usize,
     n_fixable: usize,
     problems: Problems,
 }
@@ -130,6 +134,7 @@ impl Tally {
         self.n_errors += scene.found.n_errors;
         self.n_warnings += scene.found.n_warnings;
         self.n_fixed += scene.n_fixes;
+        self.n_changed += usize::from(scene.original.is_some());
         let has_error = scene.found.diagnostics.iter().any(|found| found.code.name.is_none());
         let is_fixable = |fixes: &[Fix]| fixes.first().is_some_and(|fix| fix.safety == Safety::Safe);
         if !has_error {
@@ -152,8 +157,9 @@ impl Tally {
         format!("{} linted: {found}{fixed}{fixable}\n", counted(self.n_scenes, "scene"))
     }
 
-    fn outcome(&self) -> Outcome {
-        match (self.problems.has_error(), self.n_errors + self.n_warnings) {
+    fn outcome(&self, args: &LintArgs) -> Outcome {
+        let n_differences = if args.diff { self.n_changed } else { 0 };
+        match (self.problems.has_error(), self.n_errors + self.n_warnings + n_differences) {
             (true, _) => Outcome::Environment,
             (false, 0) => Outcome::Fine,
             (false, _) => Outcome::SceneErrors,
