@@ -49,12 +49,18 @@ impl Editor {
 
     /// Starts a server and agrees with it on the encoding of places.
     fn with_encodings(encodings: &[&str]) -> Self {
+        Self::introduced(encodings, json!({}))
+    }
+
+    /// Starts a server, agrees with it on the encoding of places, and tells it more about the editor.
+    fn introduced(encodings: &[&str], further: Value) -> Self {
         let mut editor = Self::silent();
-        let answer = editor.ask(
-            "initialize",
-            json!({ "processId": null, "rootUri": null, "capabilities": {
+        let mut params = json!({ "processId": null, "rootUri": null, "capabilities": {
                 "general": { "positionEncodings": encodings },
-                "workspace": { "workspaceEdit": { "documentChanges": true } },
+                "workspace": {
+                    "workspaceEdit": { "documentChanges": true },
+                    "didChangeWatchedFiles": { "dynamicRegistration": true },
+                },
                 "textDocument": {
                     "completion": { "completionItem": { "snippetSupport": true } },
                     "hover": { "contentFormat": ["markdown"] },
@@ -62,11 +68,18 @@ impl Editor {
                     "codeAction": { "codeActionLiteralSupport": { "codeActionKind": { "valueSet": [] } } },
                     "publishDiagnostics": { "relatedInformation": true },
                 },
-            } }),
-        );
+            } });
+        let further = further.as_object().expect("an object").clone();
+        params.as_object_mut().expect("an object").extend(further);
+        let answer = editor.ask("initialize", params);
         let chosen = encodings.first().copied().unwrap_or("utf-16");
         assert_eq!(answer["capabilities"]["positionEncoding"], chosen);
         editor.note("initialized", json!({}));
+        let wish = editor.wait_for(|frame| frame["method"] == "client/registerCapability");
+        let registration = &wish["params"]["registrations"][0];
+        assert_eq!(registration["method"], "workspace/didChangeWatchedFiles");
+        assert_eq!(registration["registerOptions"]["watchers"][0]["globPattern"], "**/clisc.toml");
+        editor.send(&json!({ "jsonrpc": "2.0", "id": wish["id"], "result": null }));
         editor
     }
 
@@ -79,8 +92,25 @@ impl Editor {
 
     fn open_text(&mut self, text: &str) {
         (self.text, self.version) = (text.to_owned(), 1);
-        let document = json!({ "uri": URI, "languageId": "cli", "version": 1, "text": text });
+        self.open_at(URI, text);
+    }
+
+    /// Opens a document at another address, which is the test's own to keep.
+    fn open_at(&mut self, uri: &str, text: &str) {
+        let document = json!({ "uri": uri, "languageId": "cli", "version": 1, "text": text });
         self.note("textDocument/didOpen", json!({ "textDocument": document }));
+    }
+
+    /// Waits for what is told next of an address.
+    fn told_of(&mut self, uri: &str) -> Vec<Value> {
+        let told = self
+            .wait_for(|frame| frame["method"] == "textDocument/publishDiagnostics" && frame["params"]["uri"] == uri);
+        told["params"]["diagnostics"].as_array().expect("a list").clone()
+    }
+
+    /// Tells whether what is told next of an address says that a scene has no `fov`.
+    fn misses_fov(&mut self, uri: &str) -> bool {
+        self.told_of(uri).iter().any(|found| found["code"] == "W0302")
     }
 
     fn send_bytes(&mut self, bytes: &[u8]) {
@@ -481,6 +511,109 @@ fn a_comment_allows_a_finding_as_everywhere() {
     let rules = editor.ask_at("completion", 1, 18);
     assert!(rules.as_array().expect("a list").iter().any(|rule| rule["label"] == "unused-surface"));
     assert_eq!(rules[0]["textEdit"]["range"], range((1, 15), (1, 18)));
+}
+
+/// Of a scene full of mistakes the first hundreds are shown, errors first, and the others are counted.
+#[test]
+fn a_great_many_findings_are_counted() {
+    let mut editor = Editor::open(&("surface 0 0 0 0 0 0 0 0 0 1 0\n".repeat(10) + &"sphere 0\n".repeat(12_000)));
+    let found = editor.diagnostics();
+    let (last, shown) = found.split_last().expect("findings");
+    assert_eq!(shown.len(), 300);
+    assert!(shown.iter().all(|found| found["severity"] == 1), "errors come first");
+    assert_eq!(last["range"], range((310, 0), (310, 6)), "at the first that is left out");
+    let message = last["message"].as_str().expect("a message");
+    assert!(message.starts_with("… and 117") && message.contains("11700 errors, "), "{message}");
+    assert_eq!(editor.leave(), Some(0));
+}
+
+const NO_FOV: &str = "light 1 1 1 0 0 5\nwrite \"a.png\"\n";
+const ALLOWED: &str = "[lint.rules]\nno-fov = \"off\"\n";
+
+/// A folder whose name needs escapes, and the address of a file in it.
+fn folder_and_uri() -> (support::Folder, impl Fn(&str) -> String) {
+    let folder = support::Folder::new();
+    folder.put("scénes %41/b/a.cli", "");
+    let root = folder.at("").canonicalize().expect("a folder");
+    (folder, move |name| format!("file://{}/sc%C3%A9nes%20%2541/{name}", root.display()))
+}
+
+/// A change of `clisc.toml` is seen, whether or not the editor tells of it; while it is broken, it says so at its place, and
+/// what it said before holds.
+#[test]
+fn a_change_of_the_configuration_is_seen() {
+    let (folder, uri) = folder_and_uri();
+    let (scene, config) = (uri("b/a.cli"), uri("clisc.toml"));
+    let put = |text: &str| folder.put("scénes %41/clisc.toml", text);
+    let mut editor = Editor::with_encodings(&["utf-16"]);
+    editor.open_at(&scene, NO_FOV);
+    assert!(editor.misses_fov(&scene), "there is no configuration");
+
+    put(ALLOWED);
+    assert!(!editor.misses_fov(&scene), "seen without being told of");
+
+    put("[lint.rules]\n\"é😀\" = \"off\"\n");
+    let changes = json!({ "changes": [{ "uri": config, "type": 2 }] });
+    editor.note("workspace/didChangeWatchedFiles", changes.clone());
+    let faults = editor.told_of(&config);
+    let [fault] = &faults[..] else { panic!("{faults:?}") };
+    assert_eq!((&fault["severity"], &fault["range"]), (&1.into(), &range((1, 0), (1, 13))));
+    assert!(fault["message"].as_str().expect("a message").contains("there is no rule `é😀`"), "{fault}");
+    assert!(!editor.misses_fov(&scene), "what it said before holds");
+
+    put("[lint.rules]\nno-fov = \"warning\" x\n");
+    editor.note("workspace/didChangeWatchedFiles", changes.clone());
+    assert_eq!(editor.told_of(&config)[0]["range"]["start"], json!({ "line": 1, "character": 19 }));
+    assert!(!editor.misses_fov(&scene), "what it said before still holds");
+
+    put("[lint.rules]\nno-fov = \"warning\"\n");
+    editor.note("workspace/didChangeWatchedFiles", changes.clone());
+    assert_eq!(editor.told_of(&config), [] as [Value; 0], "mended");
+    assert!(editor.misses_fov(&scene));
+
+    put("[lint\n");
+    editor.note("workspace/didChangeWatchedFiles", changes);
+    assert_eq!(editor.told_of(&config).len(), 1);
+    editor.note("textDocument/didClose", json!({ "textDocument": { "uri": scene } }));
+    assert_eq!(editor.told_of(&config), [] as [Value; 0], "nobody uses it any more");
+    assert_eq!(editor.leave(), Some(0));
+}
+
+/// However an address is written, the nearest `clisc.toml` counts; for what is no file, that of the folder that is open.
+#[test]
+fn every_address_finds_its_configuration() {
+    let (folder, uri) = folder_and_uri();
+    folder.put("scénes %41/clisc.toml", ALLOWED);
+    let with_three = uri("b/a.cli");
+    let path = with_three.strip_prefix("file://").expect("a file");
+    let further = json!({ "workspaceFolders": [{ "uri": uri("b"), "name": "b" }] });
+    let mut editor = Editor::introduced(&["utf-8"], further);
+    for uri in [&with_three, &format!("file:{path}"), &format!("file://localhost{path}"), "untitled:Untitled-1"] {
+        editor.open_at(uri, NO_FOV);
+        assert!(!editor.misses_fov(uri), "{uri}");
+    }
+    editor.open_at("file:///nowhere/a.cli", NO_FOV);
+    assert!(editor.misses_fov("file:///nowhere/a.cli"));
+    assert_eq!(editor.leave(), Some(0));
+    for further in [json!({ "rootUri": uri("b") }), json!({ "rootPath": folder.at("scénes %41/b") })] {
+        let mut editor = Editor::introduced(&["utf-8"], further);
+        editor.open_at("untitled:Untitled-1", NO_FOV);
+        assert!(!editor.misses_fov("untitled:Untitled-1"));
+    }
+}
+
+/// A server whose editor has died ends, also if somebody else keeps its pipes open.
+#[test]
+fn the_server_ends_with_its_editor() {
+    let mut short_lived =
+        Command::new(env!("CARGO_BIN_EXE_clisc")).arg("lsp").stdin(Stdio::piped()).spawn().expect("a process");
+    let mut editor = Editor::introduced(&["utf-8"], json!({ "processId": short_lived.id() }));
+    editor.open_text(SCENE);
+    assert_eq!(editor.diagnostics(), [] as [Value; 0]);
+    assert_eq!(editor.server.try_wait().expect("a state"), None, "the editor lives");
+    drop(short_lived.stdin.take());
+    short_lived.wait().expect("an end");
+    assert_eq!(editor.server.wait().expect("an end").code(), Some(1));
 }
 
 #[test]

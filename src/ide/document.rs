@@ -3,7 +3,7 @@
 use std::cell::OnceCell;
 use std::ops::Range;
 
-use crate::diag::Diagnostic;
+use crate::ide::found::Found;
 use crate::ide::position::{Lines, Position, Unit};
 use crate::lint::{Options, lint};
 use crate::source::{Source, SourceError, Span};
@@ -105,7 +105,7 @@ impl Document {
 
     /// Does the work of [`diagnostics_of`].
     #[must_use]
-    pub fn diagnostics(&self, options: &Options) -> Vec<Diagnostic> {
+    pub fn diagnostics(&self, options: &Options) -> Found {
         diagnostics_of(&self.source, options)
     }
 
@@ -116,10 +116,11 @@ impl Document {
     }
 }
 
-/// Finds what is wrong with a scene, in the order of the text: what the compiler and the rules find and nothing allows.
+/// Finds what is wrong with a scene: what the compiler and the rules find and nothing allows.
 #[must_use]
-pub fn diagnostics_of(source: &Source, options: &Options) -> Vec<Diagnostic> {
-    lint(source, options).diagnostics
+pub fn diagnostics_of(source: &Source, options: &Options) -> Found {
+    let found = lint(source, options);
+    Found { listed: found.diagnostics, n_errors: found.n_errors, n_warnings: found.n_warnings }
 }
 
 /// Returns the kind of a command, as far as it can be told.

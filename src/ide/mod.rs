@@ -9,6 +9,7 @@
 mod color;
 mod completion;
 mod document;
+mod found;
 mod hints;
 mod hover;
 mod line;
@@ -21,6 +22,7 @@ mod tokens;
 pub use color::{ColorPlace, color_text, color_words, colors};
 pub use completion::{Completion, CompletionKind, completions};
 pub use document::{Change, Document, diagnostics_of};
+pub use found::{Found, MAX_SHOWN, Rest};
 pub use hints::{Hint, hints};
 pub use hover::{Hover, hover};
 pub use outline::{Fold, FoldKind, Symbol, folds, outline};

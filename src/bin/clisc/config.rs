@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 use std::fs;
-use std::io::ErrorKind;
+use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
@@ -12,7 +12,7 @@ use clisc::lint::{Options, parse_config};
 use crate::input;
 
 /// The name of the file.
-const FILE_NAME: &str = "clisc.toml";
+pub const FILE_NAME: &str = "clisc.toml";
 
 /// The configurations that have been read so far, by the folder of the scenes that they are for.
 #[derive(Debug, Default)]
@@ -69,14 +69,16 @@ impl ConfigFile {
 /// # Errors
 /// When there is one that cannot be read.
 pub fn find(folder: &Path) -> anyhow::Result<Option<ConfigFile>> {
-    let Ok(folder) = fs::canonicalize(folder) else { return Ok(None) };
-    for folder in folder.ancestors() {
-        let path = folder.join(FILE_NAME);
-        match fs::read_to_string(&path) {
-            Ok(text) => return Ok(Some(ConfigFile { folder: folder.to_owned(), text })),
-            Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {}
-            Err(error) => return Err(error).with_context(|| format!("cannot read `{}`", path.display())),
-        }
-    }
-    Ok(None)
+    let Some((folder, text)) = look_up(folder) else { return Ok(None) };
+    let text = text.with_context(|| format!("cannot read `{}`", folder.join(FILE_NAME).display()))?;
+    Ok(Some(ConfigFile { folder, text }))
+}
+
+/// Does the work of [`find`]: returns the folder of the configuration, all links followed, and its text, if that can be read.
+pub fn look_up(folder: &Path) -> Option<(PathBuf, io::Result<String>)> {
+    let folder = fs::canonicalize(folder).ok()?;
+    folder.ancestors().find_map(|folder| match fs::read_to_string(folder.join(FILE_NAME)) {
+        Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => None,
+        text => Some((folder.to_owned(), text)),
+    })
 }

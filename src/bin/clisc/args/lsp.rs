@@ -14,4 +14,6 @@ pub struct LspArgs {
 const LSP_NOTES: &str = "\
 An editor starts this command and talks to it in the Language Server Protocol; docs/editors.md says how to set one up.
 
+The server ends when the editor says so, closes standard input, or has died.
+
 Exit codes: 0 when the editor has said goodbye, 1 when it went without.";

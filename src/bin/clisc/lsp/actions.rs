@@ -83,7 +83,7 @@ pub fn code_actions(open: &Open, params: CodeActionParams) -> Answer<Option<Vec<
     let range = Places::new(open).span(params.range);
     let mut actions = Vec::new();
     if wants(&CodeActionKind::QUICKFIX) {
-        for found in open.found().iter().filter(|found| touches(found, range)) {
+        for found in open.found().listed.iter().filter(|found| touches(found, range)) {
             actions.extend(found.fixes.iter().map(|fix| quick_fix(open, found, fix)));
             actions.extend(allow(open, found));
         }
@@ -125,7 +125,7 @@ fn allow(open: &Open, found: &Diagnostic) -> Option<CodeAction> {
 /// Offers all safe fixes that do not touch each other, if there are any.
 fn fix_all_action(open: &Open, kind: CodeActionKind) -> Option<CodeAction> {
     let first_of = |found: &'_ Diagnostic| found.fixes.first().filter(|fix| fix.safety == Safety::Safe).cloned();
-    let fixes: Vec<Fix> = open.found().iter().filter_map(first_of).collect();
+    let fixes: Vec<Fix> = open.found().listed.iter().filter_map(first_of).collect();
     let fixed = apply(open.document.text(), &fixes);
     let applied = fixes.iter().zip(fixed.is_applied).filter(|(_, is_applied)| *is_applied);
     let edits: Vec<Edit> = applied.flat_map(|(fix, _)| fix.edits.clone()).collect();

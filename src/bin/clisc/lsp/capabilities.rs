@@ -1,15 +1,21 @@
 //! What the editor can do, and what the server offers.
 
+use std::path::PathBuf;
+
 use clisc::ide::SemanticKind;
 use clisc::ide::position::Unit;
+use lsp_types::notification::{self, Notification as _};
 use lsp_types::{
     CodeActionKind, CodeActionOptions, CodeActionProviderCapability, ColorProviderCapability, CompletionOptions,
     FoldingRangeProviderCapability, HoverProviderCapability, OneOf, PositionEncodingKind, RenameOptions,
     SemanticTokenType, SemanticTokensFullOptions, SemanticTokensLegend, SemanticTokensOptions, ServerCapabilities,
     SignatureHelpOptions, TextDocumentSyncCapability, TextDocumentSyncKind, TextDocumentSyncOptions,
-    WorkDoneProgressOptions,
+    WorkDoneProgressOptions, WorkspaceFoldersServerCapabilities, WorkspaceServerCapabilities,
 };
-use serde_json::Value;
+use serde_json::{Value, json};
+
+use crate::config::FILE_NAME;
+use crate::lsp::address::path;
 
 /// The kind of the action that carries out every safe fix at once.
 pub const FIX_ALL: &str = "source.fixAll.clisc";
@@ -31,6 +37,8 @@ pub struct Client {
     pub has_code_actions: bool,
     /// Whether a diagnostic may name other places.
     pub has_related_places: bool,
+    /// Whether it watches files when it is asked to.
+    pub has_watchers: bool,
 }
 
 impl Client {
@@ -48,8 +56,30 @@ impl Client {
             has_versioned_edits: is("workspace/workspaceEdit/documentChanges"),
             has_code_actions: at("textDocument/codeAction/codeActionLiteralSupport").is_some(),
             has_related_places: is("textDocument/publishDiagnostics/relatedInformation"),
+            has_watchers: is("workspace/didChangeWatchedFiles/dynamicRegistration"),
         }
     }
+}
+
+/// Returns the folders that are open in the editor, as far as they are files. Older editors open one at most.
+pub fn workspace_folders(params: &Value) -> Vec<PathBuf> {
+    let path_of = |uri: &Value| path(&uri.as_str()?.parse().ok()?);
+    let folders = params.get("workspaceFolders").and_then(Value::as_array);
+    let folders: Vec<_> = folders.into_iter().flatten().filter_map(|folder| path_of(folder.get("uri")?)).collect();
+    if !folders.is_empty() {
+        return folders;
+    }
+    let root_path = || params.get("rootPath").and_then(Value::as_str).map(PathBuf::from);
+    params.get("rootUri").and_then(path_of).or_else(root_path).into_iter().collect()
+}
+
+/// Returns what asks an editor to watch every `clisc.toml`.
+pub fn watchers() -> Value {
+    json!({ "registrations": [{
+        "id": "clisc/clisc.toml",
+        "method": notification::DidChangeWatchedFiles::METHOD,
+        "registerOptions": { "watchers": [{ "globPattern": format!("**/{FILE_NAME}") }] },
+    }] })
 }
 
 /// Returns the encoding of this name, if it is one.
@@ -103,6 +133,13 @@ pub fn offered(client: &Client) -> ServerCapabilities {
         folding_range_provider: Some(FoldingRangeProviderCapability::Simple(true)),
         inlay_hint_provider: Some(OneOf::Left(true)),
         semantic_tokens_provider: Some(semantic_tokens().into()),
+        workspace: Some(WorkspaceServerCapabilities {
+            workspace_folders: Some(WorkspaceFoldersServerCapabilities {
+                supported: Some(true),
+                change_notifications: Some(OneOf::Left(true)),
+            }),
+            file_operations: None,
+        }),
         ..ServerCapabilities::default()
     }
 }

@@ -1,14 +1,13 @@
 //! Places, diagnostics and edits as the protocol has them.
 
-use std::path::PathBuf;
-
+use clisc::diag::words::counted;
 use clisc::diag::{Diagnostic, Severity};
-use clisc::ide::Document;
 use clisc::ide::position::Position;
+use clisc::ide::{Document, Found, Rest};
 use clisc::source::Span;
 use lsp_types::{
     DiagnosticRelatedInformation, DiagnosticSeverity, DiagnosticTag, Documentation, Location, MarkupContent,
-    MarkupKind, NumberOrString, OneOf, OptionalVersionedTextDocumentIdentifier, TextDocumentEdit, TextEdit, Uri,
+    MarkupKind, NumberOrString, OneOf, OptionalVersionedTextDocumentIdentifier, TextDocumentEdit, TextEdit,
     WorkspaceEdit,
 };
 
@@ -74,12 +73,27 @@ impl<'d> Places<'d> {
         WorkspaceEdit { changes: Some(changes), ..WorkspaceEdit::default() }
     }
 
+    /// Returns the diagnostics of the document: the gravest, and one that counts the others.
+    pub fn diagnostics(&self, found: &Found) -> Vec<lsp_types::Diagnostic> {
+        let (shown, rest) = found.shown();
+        shown.into_iter().map(|found| self.diagnostic(found)).chain(rest.map(|rest| self.rest(rest))).collect()
+    }
+
+    /// Returns the diagnostic that stands for those that are not shown.
+    fn rest(&self, rest: Rest) -> lsp_types::Diagnostic {
+        let counts = [(rest.n_errors, "error"), (rest.n_warnings, "warning")];
+        let counts: Vec<_> = counts.into_iter().filter(|(n, _)| *n > 0).map(|(n, noun)| counted(n, noun)).collect();
+        lsp_types::Diagnostic {
+            range: self.range(rest.at),
+            severity: Some(severity(rest.severity)),
+            source: Some("clisc".to_owned()),
+            message: format!("… and {} more: {}", rest.n_errors + rest.n_warnings, counts.join(", ")),
+            ..lsp_types::Diagnostic::default()
+        }
+    }
+
     /// Returns a diagnostic; its help is part of the message, since editors have no other place for it.
     pub fn diagnostic(&self, found: &Diagnostic) -> lsp_types::Diagnostic {
-        let severity = match found.severity() {
-            Severity::Error => DiagnosticSeverity::ERROR,
-            Severity::Warning => DiagnosticSeverity::WARNING,
-        };
         let help = found.help.as_ref().map_or_else(String::new, |help| format!("\nhelp: {help}"));
         let related = found.secondary.iter().map(|label| DiagnosticRelatedInformation {
             location: self.location(label.span),
@@ -89,7 +103,7 @@ impl<'d> Places<'d> {
         let is_needless = found.code.id == clisc::diag::codes::BEHIND_LAST_WRITE.id;
         lsp_types::Diagnostic {
             range: self.range(found.primary.span),
-            severity: Some(severity),
+            severity: Some(severity(found.severity())),
             code: Some(NumberOrString::String(found.code.id.to_owned())),
             source: Some("clisc".to_owned()),
             message: found.message.clone() + &help,
@@ -112,35 +126,10 @@ pub fn documentation(text: String) -> Option<Documentation> {
         .then_some(Documentation::MarkupContent(MarkupContent { kind: MarkupKind::PlainText, value: text }))
 }
 
-/// Returns the name of the file of a document, for messages.
-pub fn file_name(uri: &Uri) -> String {
-    String::from_utf8_lossy(&decoded(uri.as_str().rsplit('/').next().unwrap_or_default())).into_owned()
-}
-
-/// Returns the path of a document that is a file.
-pub fn path(uri: &Uri) -> Option<PathBuf> {
-    let rest = uri.as_str().strip_prefix("file://")?;
-    let path = String::from_utf8(decoded(&rest[rest.find('/')?..])).ok()?;
-    let has_drive = cfg!(windows) && path.as_bytes().get(2) == Some(&b':');
-    Some(PathBuf::from(if has_drive { &path[1..] } else { &path }))
-}
-
-/// Returns the bytes that a part of an address stands for.
-fn decoded(part: &str) -> Vec<u8> {
-    let mut bytes = Vec::with_capacity(part.len());
-    let mut rest = part.as_bytes();
-    while let Some((&byte, behind)) = rest.split_first() {
-        let code = behind.first_chunk::<2>().and_then(|code| std::str::from_utf8(code).ok());
-        match code.and_then(|code| u8::from_str_radix(code, 16).ok()) {
-            Some(decoded) if byte == b'%' => {
-                bytes.push(decoded);
-                rest = &behind[2..];
-            }
-            _ => {
-                bytes.push(byte);
-                rest = behind;
-            }
-        }
+/// Returns a severity as the protocol has it.
+const fn severity(severity: Severity) -> DiagnosticSeverity {
+    match severity {
+        Severity::Error => DiagnosticSeverity::ERROR,
+        Severity::Warning => DiagnosticSeverity::WARNING,
     }
-    bytes
 }

@@ -1,19 +1,19 @@
 //! The open documents, each with what is known of it as it stands.
 
 use std::cell::{OnceCell, RefCell};
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use clisc::diag::Diagnostic;
-use clisc::ide::{Change, Document};
+use clisc::ide::{Change, Document, Found};
 use clisc::lint::Options;
 use clisc::source::SourceError;
 use lsp_types::{SemanticToken, TextDocumentContentChangeEvent, TextDocumentItem, Uri};
 
-use crate::config::Configs;
+use crate::lsp::address::{file_name, path};
 use crate::lsp::capabilities::Client;
-use crate::lsp::convert::{file_name, from_position, path};
-use crate::print;
+use crate::lsp::configs::Configs;
+use crate::lsp::convert::from_position;
 
 /// How long nothing is typed before a scene is checked.
 const PAUSE: Duration = Duration::from_millis(100);
@@ -30,8 +30,12 @@ pub struct Open {
     pub generation: u64,
     pub client: Client,
     pub document: Document,
+    /// The folder whose `clisc.toml` counts, if there is one.
+    folder: Option<PathBuf>,
+    /// What the rules are asked for.
+    pub options: Options,
     /// What is wrong with this state, once it is known.
-    pub found: OnceCell<Vec<Diagnostic>>,
+    pub found: OnceCell<Found>,
     /// The tokens that the editor was sent last, with their name.
     pub sent_tokens: RefCell<Option<(u64, Vec<SemanticToken>)>>,
     /// When this state is to be checked, unless it has been.
@@ -44,23 +48,19 @@ pub struct Open {
 
 impl Open {
     /// Returns what is wrong with the document as it stands.
-    pub fn found(&self) -> &[Diagnostic] {
-        self.found.get_or_init(|| self.document.diagnostics(&options_for(&self.uri)))
+    pub fn found(&self) -> &Found {
+        self.found.get_or_init(|| self.document.diagnostics(&self.options))
+    }
+
+    /// Returns the name of the document's file without its ending, if it is a file.
+    fn file_stem(&self) -> Option<String> {
+        path(&self.uri)?.file_stem().map(|stem| stem.to_string_lossy().into_owned())
     }
 
     /// Marks the document as being checked.
     pub fn begin_check(&mut self) {
         (self.due, self.unchecked_since, self.is_being_checked) = (None, None, true);
     }
-}
-
-/// Returns what the rules are asked for: by the `clisc.toml` nearest to a file, read anew each time, since it may change.
-pub fn options_for(uri: &Uri) -> Options {
-    let Some(path) = path(uri) else { return Options::default() };
-    Configs::default().options_for(&path).unwrap_or_else(|error| {
-        print::to_stderr(&format!("error: {error:#}\n"));
-        Options::default()
-    })
 }
 
 /// All open documents, by the text of their addresses.
@@ -71,9 +71,16 @@ pub struct Documents {
 }
 
 impl Documents {
-    /// Opens a document, or opens it anew.
-    pub fn open(&mut self, item: TextDocumentItem, client: Client, now: Instant) -> Result<(), SourceError> {
+    /// Opens a document, or opens it anew. `workspace` is the folder of documents that are no files.
+    pub fn open(
+        &mut self,
+        item: TextDocumentItem,
+        client: Client,
+        workspace: Option<PathBuf>,
+        now: Instant,
+    ) -> Result<(), SourceError> {
         let document = Document::new(&file_name(&item.uri), item.text)?;
+        let folder = path(&item.uri).map_or(workspace, |path| path.parent().map(Into::into));
         self.n_generations += 1;
         let open = Open {
             uri: item.uri.clone(),
@@ -81,6 +88,8 @@ impl Documents {
             generation: self.n_generations,
             client,
             document,
+            folder,
+            options: Options::default(),
             found: OnceCell::new(),
             sent_tokens: RefCell::default(),
             due: Some(now),
@@ -112,9 +121,32 @@ impl Documents {
         open.document.change(changes.collect(), open.client.unit)
     }
 
-    /// Lets every document be checked again: something beside it has changed.
+    /// Lets every document be checked again: something beside it may have changed.
     pub fn recheck(&mut self, now: Instant) {
         self.by_uri.values_mut().for_each(|open| open.due = Some(now));
+    }
+
+    /// Returns the folders whose configurations count.
+    pub fn folders(&self) -> BTreeSet<PathBuf> {
+        self.by_uri.values().filter_map(|open| open.folder.clone()).collect()
+    }
+
+    /// Takes configurations, and lets the documents be checked again for which something else holds now.
+    pub fn configure(&mut self, configs: &Configs, now: Instant) {
+        for open in self.by_uri.values_mut() {
+            let stem = open.file_stem();
+            let options = open.folder.as_ref().map(|folder| configs.options(folder, stem)).unwrap_or_default();
+            if options != open.options {
+                self.n_generations += 1;
+                open.generation = self.n_generations;
+                (open.options, open.found, open.due) = (options, OnceCell::new(), Some(now));
+            }
+        }
+    }
+
+    /// Tells whether no document is open.
+    pub fn is_empty(&self) -> bool {
+        self.by_uri.is_empty()
     }
 
     /// Closes a document and tells whether it was open.

@@ -1,29 +1,39 @@
 //! The conversation: messages in, answers out, one after the other.
 
-use std::cell::OnceCell;
 use std::collections::VecDeque;
 use std::io::{self, BufReader, BufWriter, Stdout, Write};
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use anyhow::Context;
-use clisc::diag::Diagnostic;
-use clisc::ide::diagnostics_of;
+use clisc::ide::{Found, diagnostics_of};
 use clisc::source::Source;
 use lsp_server::{ErrorCode, Message, Notification, Request, RequestId, Response, ResponseError};
 use lsp_types::notification::{self, Notification as _};
 use lsp_types::request::{self, Request as _};
-use lsp_types::{InitializeResult, PublishDiagnosticsParams, ServerInfo, Uri};
+use lsp_types::{Diagnostic, InitializeResult, PublishDiagnosticsParams, Range, ServerInfo, Uri};
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
-use crate::lsp::capabilities::{Client, offered};
+use crate::lsp::capabilities::{Client, offered, watchers, workspace_folders};
+use crate::lsp::client_process::ClientProcess;
+use crate::lsp::configs::Configs;
 use crate::lsp::convert::Places;
-use crate::lsp::documents::{Documents, Open, options_for};
+use crate::lsp::documents::{Documents, Open};
 use crate::lsp::transport::{self, Frame};
-use crate::lsp::{actions, handlers, tokens};
+use crate::lsp::{actions, address, handlers, tokens};
+
+/// How often the server looks after what nobody may tell it: that the editor has died, that a `clisc.toml` has changed.
+const LOOK_EVERY: Duration = Duration::from_secs(3);
+
+/// What an editor is told in place of findings when a check fails.
+const CHECK_FAILED: &str = "clisc could not check this scene; what it wrote to standard error has more";
+
+/// The stack of a check, in bytes: as much as a main thread has.
+const CHECK_STACK: usize = 8 << 20;
 
 /// What reaches the server.
 enum Incoming {
@@ -31,8 +41,8 @@ enum Incoming {
     Frame(Frame),
     /// A request that the editor no longer wants an answer to.
     Cancelled(RequestId),
-    /// From a check: what is wrong with a state of a document.
-    Found { uri: Uri, generation: u64, found: Vec<Diagnostic> },
+    /// From a check: what is wrong with a state of a document; nothing where the check itself failed.
+    Found { uri: Uri, generation: u64, found: Option<Found> },
     /// The editor is gone.
     End,
 }
@@ -64,17 +74,31 @@ pub fn serve() -> anyhow::Result<bool> {
     let mut server = Server {
         stage: Stage::BeforeInitialize,
         client: Client::default(),
+        process: None,
+        workspace: Vec::new(),
         documents: Documents::default(),
+        configs: Configs::default(),
+        next_look: Instant::now() + LOOK_EVERY,
         sender,
         out: BufWriter::new(io::stdout()),
     };
-    server.run(&receiver).context("cannot write to the editor")
+    match server.run(&receiver) {
+        // An editor that is gone reads nothing.
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(false),
+        ended => ended.context("cannot write to the editor"),
+    }
 }
 
 struct Server {
     stage: Stage,
     client: Client,
+    /// The process of the editor, if it has told.
+    process: Option<ClientProcess>,
+    /// The folders that the editor has open.
+    workspace: Vec<PathBuf>,
     documents: Documents,
+    configs: Configs,
+    next_look: Instant,
     /// Given to checks, so that they can tell what they found.
     sender: Sender<Incoming>,
     out: BufWriter<Stdout>,
@@ -86,7 +110,10 @@ impl Server {
         let mut queue = VecDeque::new();
         loop {
             receiver.try_iter().for_each(|incoming| enqueue(incoming, &mut queue));
-            self.begin_due_checks();
+            if Instant::now() >= self.next_look && self.look_around()? {
+                return Ok(self.stage == Stage::ShutDown);
+            }
+            self.begin_due_checks()?;
             let next = match queue.pop_front() {
                 Some(next) => next,
                 None => match self.wait(receiver) {
@@ -101,12 +128,36 @@ impl Server {
         }
     }
 
-    /// Waits for what comes next, or until a check is due.
+    /// Waits for what comes next, until a check is due, or until it is time to look around.
     fn wait(&self, receiver: &Receiver<Incoming>) -> Result<Incoming, RecvTimeoutError> {
-        match self.documents.next_due() {
+        let has_to_look = self.process.is_some() || !self.documents.is_empty();
+        let next_look = has_to_look.then_some(self.next_look);
+        match self.documents.next_due().into_iter().chain(next_look).min() {
             Some(due) => receiver.recv_timeout(due.saturating_duration_since(Instant::now())),
             None => receiver.recv().map_err(RecvTimeoutError::from),
         }
+    }
+
+    /// Looks for what nobody may have told: takes changed configurations, and tells whether the editor is gone.
+    fn look_around(&mut self) -> io::Result<bool> {
+        self.next_look = Instant::now() + LOOK_EVERY;
+        if let Some(process) = self.process.filter(|process| !process.is_alive()) {
+            crate::print::to_stderr(&format!("error: {process}, which the editor called its own, has ended\n"));
+            return Ok(true);
+        }
+        self.read_configs()?;
+        Ok(false)
+    }
+
+    /// Reads the configurations of all open documents, and tells what is wrong with them.
+    fn read_configs(&mut self) -> io::Result<()> {
+        let changed = self.configs.read(self.documents.folders(), self.client.unit);
+        self.documents.configure(&self.configs, Instant::now());
+        for (path, fault) in changed {
+            let Some(uri) = address::uri(&path) else { continue };
+            self.tell(PublishDiagnosticsParams { uri, diagnostics: fault.into_iter().collect(), version: None })?;
+        }
+        Ok(())
     }
 
     /// Takes one thing; when it is the last, tells whether the editor said goodbye.
@@ -127,7 +178,7 @@ impl Server {
                     self.note(notification)?;
                 }
             }
-            // The server asks nothing.
+            // An editor that does not watch files is asked for nothing else.
             Incoming::Frame(Frame::Message(Message::Response(_))) => {}
             Incoming::Frame(Frame::Malformed(answer)) => {
                 transport::write(&mut self.out, answer.to_string().as_bytes())?
@@ -137,7 +188,7 @@ impl Server {
                 self.send(Message::Response(Response { id, response_result: Err(error) }))?;
             }
             Incoming::Found { uri, generation, found } => self.publish(&uri, generation, found)?,
-            Incoming::End => return Ok(Some(false)),
+            Incoming::End => return Ok(Some(self.stage == Stage::ShutDown)),
         }
         Ok(None)
     }
@@ -166,6 +217,7 @@ impl Server {
 
     fn initialize(&mut self, params: &Value) -> Result<Value, ResponseError> {
         self.client = Client::new(params);
+        (self.process, self.workspace) = (ClientProcess::new(params), workspace_folders(params));
         self.stage = Stage::Running;
         let server_info = ServerInfo { name: "clisc".to_owned(), version: Some(env!("CARGO_PKG_VERSION").to_owned()) };
         to_value(InitializeResult { capabilities: offered(&self.client), server_info: Some(server_info) })
@@ -231,9 +283,11 @@ impl Server {
     /// Takes a notification. What is not understood is not answered, as the protocol has it, but told of on standard error.
     fn note(&mut self, Notification { method, params }: Notification) -> io::Result<()> {
         let noted = match method.as_str() {
+            notification::Initialized::METHOD => return self.ask_for_watchers(),
             notification::DidOpenTextDocument::METHOD => from_value::<lsp_types::DidOpenTextDocumentParams>(params)
                 .and_then(|params| {
-                    let opened = self.documents.open(params.text_document, self.client, Instant::now());
+                    let workspace = self.workspace.first().cloned();
+                    let opened = self.documents.open(params.text_document, self.client, workspace, Instant::now());
                     opened.map_err(|error| failure(ErrorCode::InvalidParams, &error.to_string()))
                 }),
             notification::DidChangeTextDocument::METHOD => from_value::<lsp_types::DidChangeTextDocumentParams>(params)
@@ -253,6 +307,14 @@ impl Server {
                 self.documents.recheck(Instant::now());
                 Ok(())
             }
+            notification::DidChangeWorkspaceFolders::METHOD => {
+                from_value::<lsp_types::DidChangeWorkspaceFoldersParams>(params).map(|params| {
+                    let path = |folder: &lsp_types::WorkspaceFolder| address::path(&folder.uri);
+                    let removed: Vec<_> = params.event.removed.iter().filter_map(path).collect();
+                    self.workspace.retain(|folder| !removed.contains(folder));
+                    self.workspace.extend(params.event.added.iter().filter_map(path));
+                })
+            }
             _ => Ok(()),
         };
         if let Err(error) = noted {
@@ -261,10 +323,20 @@ impl Server {
         Ok(())
     }
 
+    /// Asks an editor that can to tell when a `clisc.toml` changes.
+    fn ask_for_watchers(&mut self) -> io::Result<()> {
+        if !self.client.has_watchers {
+            return Ok(());
+        }
+        let id = RequestId::from("clisc/watch".to_owned());
+        self.send(Message::Request(Request::new(id, request::RegisterCapability::METHOD.to_owned(), watchers())))
+    }
+
     /// Closes a document and takes back what was told of it.
     fn close(&mut self, uri: Uri) -> io::Result<()> {
         if self.documents.close(&uri) {
             self.tell(PublishDiagnosticsParams { uri, diagnostics: Vec::new(), version: None })?;
+            self.read_configs()?;
         }
         Ok(())
     }
@@ -275,31 +347,41 @@ impl Server {
     }
 
     /// Begins the checks that are due, each on a thread of its own.
-    fn begin_due_checks(&mut self) {
+    fn begin_due_checks(&mut self) -> io::Result<()> {
+        if self.documents.due_at(Instant::now()).is_some() {
+            self.read_configs()?;
+        }
         while let Some(open) = self.documents.due_at(Instant::now()) {
             open.begin_check();
             let (uri, generation, sender) = (open.uri.clone(), open.generation, self.sender.clone());
+            let failed = Incoming::Found { uri: uri.clone(), generation, found: None };
             let source = Source::new(open.document.source().name(), open.document.text());
-            thread::spawn(move || {
-                let options = options_for(&uri);
-                let found = catch_unwind(|| diagnostics_of(&source, &options)).unwrap_or_default();
+            let options = open.options.clone();
+            let check = move || {
+                let found = catch_unwind(|| diagnostics_of(&source, &options)).ok();
                 // The server may be gone by now.
                 let _ = sender.send(Incoming::Found { uri, generation, found });
-            });
+            };
+            if let Err(error) = thread::Builder::new().stack_size(CHECK_STACK).spawn(check) {
+                crate::print::to_stderr(&format!("error: cannot start a thread: {error}\n"));
+                let _ = self.sender.send(failed);
+            }
         }
+        Ok(())
     }
 
     /// Tells what a check has found, if it is about the document as it stands.
-    fn publish(&mut self, uri: &Uri, generation: u64, found: Vec<Diagnostic>) -> io::Result<()> {
+    fn publish(&mut self, uri: &Uri, generation: u64, found: Option<Found>) -> io::Result<()> {
         let Some(open) = self.documents.get_mut(uri) else { return Ok(()) };
         open.is_being_checked = false;
         if open.generation != generation {
             return Ok(());
         }
-        let places = Places::new(open);
-        let diagnostics = found.iter().map(|found| places.diagnostic(found)).collect();
         let version = Some(open.version);
-        open.found = OnceCell::from(found);
+        let diagnostics = match found {
+            Some(found) => Places::new(open).diagnostics(open.found.get_or_init(|| found)),
+            None => vec![Diagnostic::new_simple(Range::default(), CHECK_FAILED.to_owned())],
+        };
         self.tell(PublishDiagnosticsParams { uri: uri.clone(), diagnostics, version })
     }
 }
