@@ -47,12 +47,11 @@ impl Compilation {
 
     /// Adds what a later stage found.
     pub fn add(&mut self, found: Vec<Diagnostic>) {
-        for diagnostic in found {
-            if count(&diagnostic, &mut self.n_errors, &mut self.n_warnings) {
-                self.diagnostics.push(diagnostic);
-            }
-        }
+        found.iter().for_each(|diagnostic| *n_of(diagnostic, &mut self.n_errors, &mut self.n_warnings) += 1);
+        self.diagnostics.extend(found);
         self.diagnostics.sort_by_key(|diagnostic| diagnostic.primary.span.start);
+        let (mut n_errors, mut n_warnings) = (0, 0);
+        self.diagnostics.retain(|diagnostic| count(diagnostic, &mut n_errors, &mut n_warnings));
     }
 
     /// Returns how many findings of a severity are not listed.
@@ -62,30 +61,44 @@ impl Compilation {
             Severity::Error => self.n_errors,
             Severity::Warning => self.n_warnings,
         };
-        n.saturating_sub(MAX_LISTED)
+        n - self.diagnostics.iter().filter(|listed| listed.severity() == severity).count()
     }
 }
 
 /// Parses and lowers a scene.
 #[must_use]
 pub fn compile(source: &Source) -> Compilation {
-    compile_runs(source, Runs::new(source), &|| Duration::ZERO)
+    compile_runs(source, Runs::new(source), &|| Duration::ZERO, &mut Some)
 }
+
+/// Does the work of [`compile`]; of what is found, what `keep` makes of it is listed and counted.
+#[must_use]
+pub fn compile_keeping(source: &Source, keep: &mut Keep<'_>) -> Compilation {
+    compile_runs(source, Runs::new(source), &|| Duration::ZERO, keep)
+}
+
+/// Decides what becomes of a finding; `None` leaves it out.
+pub type Keep<'k> = dyn FnMut(Diagnostic) -> Option<Diagnostic> + 'k;
 
 /// Does the work of [`compile`] and tells what the stages took. `now` is the time since a fixed moment; the library has
 /// no clock of its own.
 #[must_use]
 pub fn compile_timed(source: &Source, now: &(dyn Fn() -> Duration + Sync)) -> Compilation {
-    compile_runs(source, Runs::new(source), now)
+    compile_runs(source, Runs::new(source), now, &mut Some)
 }
 
 /// Does the work of [`compile`] in chunks of about `chunk_bytes`; the result is the same for any size.
 #[must_use]
 pub fn compile_in_chunks(source: &Source, chunk_bytes: usize) -> Compilation {
-    compile_runs(source, Runs::in_chunks(source, chunk_bytes), &|| Duration::ZERO)
+    compile_runs(source, Runs::in_chunks(source, chunk_bytes), &|| Duration::ZERO, &mut Some)
 }
 
-fn compile_runs(source: &Source, mut runs: Runs<'_>, now: &(dyn Fn() -> Duration + Sync)) -> Compilation {
+fn compile_runs(
+    source: &Source,
+    mut runs: Runs<'_>,
+    now: &(dyn Fn() -> Duration + Sync),
+    keep: &mut Keep<'_>,
+) -> Compilation {
     let mut lowering = Lowering::new(source);
     let mut found = Found::default();
     let mut times = Times::default();
@@ -100,10 +113,10 @@ fn compile_runs(source: &Source, mut runs: Runs<'_>, now: &(dyn Fn() -> Duration
         } else {
             rayon::join(lower, || timed(now, &mut times.parse, || runs.next())).1
         };
-        found.add(run.diagnostics, lowering.take_diagnostics());
+        found.add(run.diagnostics, lowering.take_diagnostics(), keep);
     }
     let Lowered { program, diagnostics } = lowering.finish();
-    found.add(runs.finish(), diagnostics);
+    found.add(runs.finish(), diagnostics, keep);
     let (n_errors, n_warnings) = (found.n_errors, found.n_warnings);
     Compilation { program, diagnostics: found.into_diagnostics(), n_errors, n_warnings, times }
 }
@@ -133,13 +146,14 @@ enum Stage {
 }
 
 impl Found {
-    /// Takes what the two stages found in a run.
-    fn add(&mut self, parsed: Vec<Diagnostic>, lowered: Vec<Diagnostic>) {
+    /// Takes what the two stages found in a run, as far as `keep` does.
+    fn add(&mut self, parsed: Vec<Diagnostic>, lowered: Vec<Diagnostic>, keep: &mut Keep<'_>) {
         let of_stage = |stage| move |diagnostic| (stage, diagnostic);
         let parsed = parsed.into_iter().map(of_stage(Stage::Parse));
         let mut found: Vec<_> = parsed.chain(lowered.into_iter().map(of_stage(Stage::Lower))).collect();
         sort(&mut found);
         for (stage, diagnostic) in found {
+            let Some(diagnostic) = keep(diagnostic) else { continue };
             if count(&diagnostic, &mut self.n_errors, &mut self.n_warnings) {
                 self.listed.push((stage, diagnostic));
             }
@@ -160,10 +174,15 @@ fn sort(found: &mut [(Stage, Diagnostic)]) {
 
 /// Counts a finding and tells whether it is one of those that are listed.
 fn count(diagnostic: &Diagnostic, n_errors: &mut usize, n_warnings: &mut usize) -> bool {
-    let n = match diagnostic.severity() {
-        Severity::Error => n_errors,
-        Severity::Warning => n_warnings,
-    };
+    let n = n_of(diagnostic, n_errors, n_warnings);
     *n += 1;
     *n <= MAX_LISTED
+}
+
+/// Returns the one of the two numbers that counts a finding.
+fn n_of<'n>(diagnostic: &Diagnostic, n_errors: &'n mut usize, n_warnings: &'n mut usize) -> &'n mut usize {
+    match diagnostic.severity() {
+        Severity::Error => n_errors,
+        Severity::Warning => n_warnings,
+    }
 }

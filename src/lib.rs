@@ -62,4 +62,4 @@ pub mod ide;
 #[cfg(feature = "testing")]
 pub mod testing;
 
-pub use compile::{Compilation, MAX_LISTED, Times, compile, compile_in_chunks, compile_timed};
+pub use compile::{Compilation, Keep, MAX_LISTED, Times, compile, compile_in_chunks, compile_keeping, compile_timed};

@@ -25,6 +25,36 @@ fn findings_are_1_and_none_is_0() {
     assert!(call.stderr.contains("did you mean `outside-view`?"), "{}", call.stderr);
 }
 
+/// What is not listed counts too, and only as much as it would if it were.
+#[test]
+fn findings_beyond_those_that_are_listed_are_counted_as_they_are() {
+    let dim = "surface 2 0 0  0 0 0  0 0 0  1 0\n";
+    let folder = Folder::with_scene(&scene("a.png").replacen("write", &(dim.repeat(12_000) + "write"), 1));
+    let counts = |args: &[&str]| {
+        let json = folder.clisc(&[args, &["a.cli", "--format", "json"]].concat()).stdout;
+        let json: serde_json::Value = serde_json::from_str(&json).expect("one document");
+        let n_listed = json["diagnostics"].as_array().map_or(0, Vec::len) as u64;
+        let count = |name: &str| json[name].as_u64().expect("a number");
+        assert_eq!(n_listed + count("unlisted"), count("errors") + count("warnings"), "{args:?}");
+        (count("errors"), count("warnings"), n_listed)
+    };
+    assert_eq!(counts(&["check"]), (0, 12_000, 10_000));
+    // Each is outside 0 to 1, and all but the first set what is set already.
+    assert_eq!(counts(&["lint", "--select", "outside-unit-range"]), (0, 12_000, 10_000));
+    assert_eq!(counts(&["lint", "--select", "repeated-setting"]), (0, 11_999, 10_000));
+    assert_eq!(counts(&["lint", "--select", "repeated-setting,outside-unit-range"]), (0, 23_999, 10_000));
+    assert_eq!(counts(&["lint", "--select", "no-fov"]), (0, 0, 0));
+    folder.put("clisc.toml", "[lint.rules]\noutside-unit-range = \"error\"\n");
+    assert_eq!(counts(&["check"]), (12_000, 0, 10_000));
+    folder.put("clisc.toml", "[lint.rules]\noutside-unit-range = \"off\"\n");
+    assert_eq!(counts(&["check"]), (0, 0, 0));
+    folder.put("clisc.toml", "");
+    let allowed = dim.replace('\n', " # clisc: allow(outside-unit-range)\n");
+    folder.put("a.cli", scene("a.png").replacen("write", &(allowed.repeat(12_000) + "write"), 1));
+    assert_eq!(counts(&["check"]), (0, 0, 0));
+    assert_eq!(counts(&["lint", "--select", "outside-unit-range,unused-allow"]), (0, 0, 0));
+}
+
 #[test]
 fn fixes_are_shown_or_saved() {
     let folder = Folder::with_scene(&smelly());

@@ -1,5 +1,7 @@
 //! Comments that allow a finding: `# clisc: allow(no-fov, L0101)` behind a command, or above it on lines of their own.
 
+use std::collections::HashMap;
+
 use crate::diag::fix::Edit;
 use crate::diag::words::quoted;
 use crate::diag::{Code, Diagnostic, Fix, Safety};
@@ -21,54 +23,86 @@ struct Allow<'s> {
     is_used: bool,
 }
 
-/// Returns what of `found` neither the options nor a comment allow, each with its level.
-pub(super) fn sieve(source: &Source, options: &Options, found: Vec<Diagnostic>) -> Vec<Diagnostic> {
-    if !found.iter().any(|diagnostic| diagnostic.code.name.is_some()) {
-        return found;
-    }
-    sieve_by(source, options, &mut find_allows(source), found)
-}
-
-/// Does the work of [`sieve`], and reports the comments that allow nothing. With an error in the scene it is not known
-/// whether they would.
-pub(super) fn sieve_and_check(
-    source: &Source,
-    options: &Options,
-    found: Vec<Diagnostic>,
+/// Holds back what the options or a comment of a scene allow, and remembers which comments did.
+pub(super) struct Sieve<'a> {
+    pub source: &'a Source,
+    options: &'a Options,
+    /// Searched for when the first finding comes that can be allowed.
+    allows: Option<Allows<'a>>,
     has_errors: bool,
-) -> Vec<Diagnostic> {
-    let mut allows = find_allows(source);
-    let mut left = sieve_by(source, options, &mut allows, found);
-    let mut idle = misspelt_directives(source);
-    for allow in &allows {
-        let is_known = !has_errors && allow.rule.as_ref().is_ok_and(|rule| options.level(rule) != Level::Off);
-        match &allow.rule {
-            Ok(rule) if is_known && !allow.is_used && **rule != UNUSED_ALLOW.code => {
-                idle.push(unused(source, allow));
-            }
-            Err(error) => idle.push(unknown(source, allow, error)),
-            Ok(_) => {}
-        }
-    }
-    left.extend(sieve_by(source, options, &mut allows, idle));
-    left
 }
 
-fn sieve_by(source: &Source, options: &Options, allows: &mut [Allow<'_>], found: Vec<Diagnostic>) -> Vec<Diagnostic> {
-    let is_left = |diagnostic: &Diagnostic| {
-        if allows.is_empty() || diagnostic.code.name.is_none() {
-            return true;
+/// What comments allow, and the indices of what counts on a line.
+struct Allows<'a> {
+    all: Vec<Allow<'a>>,
+    by_line: HashMap<usize, Vec<usize>>,
+}
+
+impl<'a> Sieve<'a> {
+    pub fn new(source: &'a Source, options: &'a Options) -> Self {
+        Self { source, options, allows: None, has_errors: false }
+    }
+
+    /// Returns a finding with its level, unless it is allowed.
+    pub fn keep(&mut self, found: Diagnostic) -> Option<Diagnostic> {
+        if found.code.name.is_none() {
+            self.has_errors = true;
+            return Some(found);
         }
-        let line = source.lines().line_of(diagnostic.primary.span.start);
-        let mut is_left = true;
-        for allow in allows.iter_mut().filter(|allow| allow.lines.contains(&line)) {
-            if allow.rule == Ok(diagnostic.code) {
-                (allow.is_used, is_left) = (true, false);
+        let found = self.options.leveled(found)?;
+        let source = self.source;
+        let allows = self.allows();
+        let line = source.lines().line_of(found.primary.span.start);
+        let mut is_kept = true;
+        for &index in allows.by_line.get(&line).into_iter().flatten() {
+            let allow = &mut allows.all[index];
+            if allow.rule == Ok(found.code) {
+                (allow.is_used, is_kept) = (true, false);
             }
         }
-        is_left
-    };
-    found.into_iter().filter_map(|diagnostic| options.leveled(diagnostic)).filter(is_left).collect()
+        is_kept.then_some(found)
+    }
+
+    pub fn keep_all(&mut self, found: Vec<Diagnostic>) -> Vec<Diagnostic> {
+        found.into_iter().filter_map(|found| self.keep(found)).collect()
+    }
+
+    /// Reports the comments that allow nothing. With an error in the scene it is not known whether they would.
+    pub fn finish(mut self) -> Vec<Diagnostic> {
+        let (source, options, has_errors) = (self.source, self.options, self.has_errors);
+        let mut idle = misspelt_directives(source);
+        for allow in &self.allows().all {
+            let is_known = !has_errors && allow.rule.as_ref().is_ok_and(|rule| options.level(rule) != Level::Off);
+            match &allow.rule {
+                Ok(rule) if is_known && !allow.is_used && **rule != UNUSED_ALLOW.code => {
+                    idle.push(unused(source, allow));
+                }
+                Err(error) => idle.push(unknown(source, allow, error)),
+                Ok(_) => {}
+            }
+        }
+        self.keep_all(idle)
+    }
+
+    fn allows(&mut self) -> &mut Allows<'a> {
+        let source = self.source;
+        self.allows.get_or_insert_with(|| Allows::find(source))
+    }
+}
+
+impl<'a> Allows<'a> {
+    fn find(source: &'a Source) -> Self {
+        let all = find_allows(source);
+        let mut by_line: HashMap<usize, Vec<usize>> = HashMap::new();
+        for (index, allow) in all.iter().enumerate() {
+            let [comment, command] = allow.lines;
+            by_line.entry(comment).or_default().push(index);
+            if command != comment {
+                by_line.entry(command).or_default().push(index);
+            }
+        }
+        Self { all, by_line }
+    }
 }
 
 /// Returns what the comments of a scene allow.

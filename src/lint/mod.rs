@@ -21,10 +21,11 @@ pub use fixer::{FixedScene, fix_all};
 pub use options::{Level, Options, UnknownRule, find_rule};
 pub use registry::{RULES, Rule, all_codes, find, nearest};
 
-use crate::compile::{Compilation, compile};
+use crate::compile::{Compilation, compile_keeping};
 use crate::diag::Diagnostic;
 use crate::exec::refused_names;
 use crate::ir::{self, Program};
+use crate::lint::allow::Sieve;
 use crate::lint::context::RuleContext;
 use crate::source::Source;
 use crate::syntax::parse;
@@ -32,30 +33,41 @@ use crate::syntax::parse;
 /// Compiles a scene and finds what the compiler finds, without what its comments and the options allow.
 #[must_use]
 pub fn check(source: &Source, options: &Options) -> Compilation {
-    let mut compilation = compile(source);
-    compilation.add(refused_names(&compilation.program));
-    leave_out_allowed(source, options, &mut compilation);
+    check_with(&mut Sieve::new(source, options))
+}
+
+fn check_with(sieve: &mut Sieve<'_>) -> Compilation {
+    let mut compilation = compile_keeping(sieve.source, &mut |found| sieve.keep(found));
+    compilation.add(sieve.keep_all(refused_names(&compilation.program)));
     compilation
 }
 
 /// Leaves out of what the compiler has found what comments and options allow, and gives the rest its level.
 pub fn leave_out_allowed(source: &Source, options: &Options, compilation: &mut Compilation) {
+    let mut sieve = Sieve::new(source, options);
+    if compilation.diagnostics.len() < compilation.n_errors + compilation.n_warnings {
+        // What is not listed counts as well.
+        let again = check_with(&mut sieve);
+        (compilation.n_errors, compilation.n_warnings) = (again.n_errors, again.n_warnings);
+        compilation.diagnostics = again.diagnostics;
+        return;
+    }
     let found = std::mem::take(&mut compilation.diagnostics);
-    settle(compilation, found, |found| allow::sieve(source, options, found));
+    (compilation.n_errors, compilation.n_warnings) = (0, 0);
+    compilation.add(sieve.keep_all(found));
 }
 
 /// Compiles a scene and finds what the compiler and every rule find, without what its comments and the options allow. The
 /// program is not given back.
 #[must_use]
 pub fn lint(source: &Source, options: &Options) -> Compilation {
-    let mut compilation = compile(source);
-    compilation.add(refused_names(&compilation.program));
-    let mut found = std::mem::take(&mut compilation.diagnostics);
-    let n_compiled = found.len();
+    let mut sieve = Sieve::new(source, options);
+    let mut compilation = check_with(&mut sieve);
+    let mut found = Vec::new();
     check_rules(source, options, std::mem::take(&mut compilation.program), &mut found);
-    let has_errors = compilation.has_errors();
-    compilation.n_warnings += found.len() - n_compiled;
-    settle(&mut compilation, found, |found| allow::sieve_and_check(source, options, found, has_errors));
+    found = sieve.keep_all(found);
+    found.extend(sieve.finish());
+    compilation.add(found);
     compilation
 }
 
@@ -67,23 +79,4 @@ fn check_rules(source: &Source, options: &Options, program: Program, acc: &mut V
     for rule in RULES.iter().filter(|rule| options.level(&rule.code) != Level::Off) {
         (rule.check)(&cx, acc);
     }
-}
-
-/// Puts what `sieve` leaves of `found` into a compilation and counts it. What is counted there and not listed stays counted.
-fn settle(
-    compilation: &mut Compilation,
-    found: Vec<Diagnostic>,
-    sieve: impl FnOnce(Vec<Diagnostic>) -> Vec<Diagnostic>,
-) {
-    let count = |found: &[Diagnostic]| {
-        let n_errors = found.iter().filter(|diagnostic| diagnostic.is_error()).count();
-        [n_errors, found.len() - n_errors]
-    };
-    let before = count(&found);
-    let mut left = sieve(found);
-    let after = count(&left);
-    compilation.n_errors = compilation.n_errors + after[0] - before[0];
-    compilation.n_warnings = compilation.n_warnings + after[1] - before[1];
-    left.sort_by_key(|diagnostic| diagnostic.primary.span.start);
-    compilation.diagnostics = left;
 }
