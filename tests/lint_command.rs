@@ -70,6 +70,73 @@ fn fixes_are_shown_or_saved() {
     assert_eq!(folder.bytes("bad.cli"), (smelly() + "sphere x\n").as_bytes(), "never over an error");
 }
 
+/// What a help line spells out and nobody can have meant otherwise, `--fix` does.
+#[test]
+fn mistakes_of_one_reading_are_mended() {
+    let mended = |text: &str| {
+        let folder = Folder::with_scene(text);
+        folder.clisc(&["lint", "a.cli", "--fix"]);
+        String::from_utf8(folder.bytes("a.cli")).expect("text")
+    };
+    for (line, repair) in [
+        ("sphere 0,0,-5,1", "sphere 0 0 -5 1"),
+        ("sphere 0, 0, -5, 1", "sphere 0 0 -5 1"),
+        ("sphere(0,0,-5,1)", "sphere 0 0 -5 1"),
+        ("sphere (0, 0, -5), 1  # a ball", "sphere 0 0 -5 1  # a ball"),
+        ("sphere: 0 0 -5 1", "sphere 0 0 -5 1"),
+        ("SPHERE 0 0 -5 1", "sphere 0 0 -5 1"),
+        ("Sphere(0;0;-5;1)", "sphere 0 0 -5 1"),
+        ("fov60", "fov 60"),
+        ("fov 59,5", "fov 59.5"),
+        ("sphere 0,5 0 \u{2212}5 1.0f", "sphere 0.5 0 -5 1.0"),
+        ("sphere 0 0 - 5 1", "sphere 0 0 -5 1"),
+        ("sphere 0\u{a0}0 -5 1", "sphere 0 0 -5 1"),
+        ("sphere 0 0 -5 1 sphere 1 0 -5 1", "sphere 0 0 -5 1\nsphere 1 0 -5 1"),
+        ("surface 0 0 0  1 0 0\n0 0 0  1 0", "surface 0 0 0  1 0 0 0 0 0  1 0"),
+        ("// a ball", "# a ball"),
+        ("fov 60 // wide", "fov 60 # wide"),
+        ("; a ball", "# a ball"),
+        ("write b.jpg", "write b.png"),
+        ("write b.PNG", "write b.png"),
+        ("write b", "write b.png"),
+        ("write 'b.png'", "write b.png"),
+        ("write b.png;", "write b.png"),
+        ("write \"b c.png", "write \"b c.png\""),
+        ("write(\"b.png\")", "write b.png"),
+        ("write b.png#last", "write b.png #last"),
+    ] {
+        // A line that cannot be mended keeps the rules from having their say.
+        assert_eq!(mended(&format!("sphere x\n{line}\n")), format!("sphere x\n{repair}\n"));
+    }
+    for line in [
+        "sphere 0 0 -5 radius=1", // an argument of another place, perhaps
+        "sphere <0,0,-5>, 1",     // another language, with an order of its own
+        "sphere1 0 0 -5",         // the first sphere, or one at 1
+        "sphere1 0 -5 1",
+        "sphere 0 0 -5\n1", // a radius, or an angle without its command
+        "fov 1,000",        // one, or a thousand
+        "fov 50%",
+        "sphre 0 0 -5 1",
+        "write b.tar",
+        "write my b.png",
+        "write b.png 640 480",
+        "fov 60 write later",
+        "write \"b # later",
+        "'sphere 0 0 -5 1'",
+    ] {
+        let text = format!("sphere x\n{line}\n");
+        assert_eq!(mended(&text), text);
+    }
+    assert_eq!(
+        mended("write a.png\nwrite a.jpg\nwrite b\nwrite b.gif\n"),
+        "write a.png\nwrite a.jpg\nwrite b.png\nwrite b.gif\n"
+    );
+    let whole = scene("a.png").replace("fov 60", "FOV(60)").replace("sphere 0 0 -4 1", "sphere 0,0,-4,1\nfov 60");
+    let call = Folder::with_scene(&whole).clisc(&["lint", "a.cli"]);
+    assert!(call.stderr.ends_with("2 errors, no warning, 2 that --fix mends\n"), "{}", call.stderr);
+    assert_eq!(mended(&whole), scene("a.png"), "and what rules find is mended when no error is left");
+}
+
 #[test]
 fn the_nearest_configuration_above_counts() {
     let folder = Folder::new();

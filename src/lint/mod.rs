@@ -17,7 +17,7 @@ mod rules;
 mod sight;
 
 pub use config::{ConfigError, parse_config, parse_exclude};
-pub use fixer::{FixedScene, fix_all};
+pub use fixer::{FixedScene, fix_all, safe_fixes};
 pub use options::{Level, Options, UnknownRule, find_rule};
 pub use registry::{RULES, Rule, all_codes, find, nearest};
 

@@ -5,8 +5,9 @@ use chumsky::error::Rich;
 use crate::diag::words::{counted, listed, named, ordinal, quoted};
 use crate::diag::{Diagnostic, Edit, Fix, Safety, codes, fix};
 use crate::source::{Source, Span};
+use crate::syntax::lexer::lex_line;
 use crate::syntax::parser::{grammar, names, numeral, path};
-use crate::syntax::spec::{ArgSpec, Arguments, CommandSpec};
+use crate::syntax::spec::{self, ArgSpec, Arguments, CommandSpec};
 use crate::syntax::token::{Token, TokenKind};
 
 /// A command whose arguments are wrong.
@@ -89,8 +90,8 @@ impl BadCommand<'_> {
     }
 
     /// Returns the fix that writes `command` in place of this one, and what follows on a line of its own.
-    pub(super) fn rewritten(&self, command: &str) -> Fix {
-        let mut fix = Fix::write(Safety::Unsafe, self.span(), command);
+    pub(super) fn rewritten(&self, safety: Safety, command: &str) -> Fix {
+        let mut fix = Fix::write(safety, self.span(), command);
         fix.edits.extend(self.next_name.map(|next| self.broken_before(next)));
         fix
     }
@@ -143,7 +144,8 @@ fn malformed(command: &BadCommand<'_>, index: usize) -> Diagnostic {
     let arg = &command.args[index];
     match command.spec.arguments {
         Arguments::Numbers(args) => {
-            let diagnostic = numeral::diagnose(command.source, arg.span, command.spec, &args[index]);
+            let is_exact = command.args.len() == args.len();
+            let diagnostic = numeral::diagnose(command.source, arg.span, command.spec, &args[index], is_exact);
             let is_short = command.args.len() < args.len();
             if is_short { diagnostic.secondary(command.name, command.needs()) } else { diagnostic }
         }
@@ -188,7 +190,8 @@ fn glued_comment(command: &BadCommand<'_>) -> Option<Span> {
     is_glued.then(|| Span::new(start, start + comment.trim_end().len() as u32))
 }
 
-/// Returns the fix that joins the next line to this one, if nothing is missing then. `n` arguments are there already.
+/// Returns the fix that joins the next line to this one, if nothing is missing then. `n` arguments are there already. A lone
+/// number may be a line of its own, of which the command is missing.
 fn next_line_joined(command: &BadCommand<'_>, n: usize) -> Option<Fix> {
     let end = command.span().end;
     let rest = &command.source.text()[end as usize..];
@@ -199,7 +202,12 @@ fn next_line_joined(command: &BadCommand<'_>, n: usize) -> Option<Fix> {
     let n_more = arguments.split_ascii_whitespace().take_while(|word| numeral::is_number(word)).count();
     let is_whole = n + n_more == command.n_expected() && n_more == arguments.split_ascii_whitespace().count();
     let joined = Edit::replace(Span::new(end, end + between.len() as u32), " ");
-    (is_whole && between.matches('\n').count() == 1).then(|| Fix::guess("join the next line to this one", vec![joined]))
+    let safety = if n_more > 1 { Safety::Safe } else { Safety::Unsafe };
+    (is_whole && between.matches('\n').count() == 1).then(|| Fix {
+        title: "join the next line to this one".to_owned(),
+        edits: vec![joined],
+        safety,
+    })
 }
 
 /// Tells whether the next line begins with a number, as if it were part of this one.
@@ -243,6 +251,10 @@ fn help_for_surplus(command: &BadCommand<'_>, surplus: &[Token], span: Span) -> 
 /// Reports a command that is whole and another that follows it on the same line.
 fn second_command(command: &BadCommand<'_>, next_name: Span) -> Diagnostic {
     let next = command.source.slice(next_name);
+    let edits = vec![command.broken_before(next_name)];
+    // Words that happen to be commands may have been meant as a comment.
+    let is_sure = matches!(command.spec.arguments, Arguments::Numbers(_)) && begins_whole_command(command, next_name);
+    let safety = if is_sure { Safety::Safe } else { Safety::Unsafe };
     Diagnostic::new(
         &codes::SURPLUS_ARGUMENT,
         next_name,
@@ -251,6 +263,27 @@ fn second_command(command: &BadCommand<'_>, next_name: Span) -> Diagnostic {
     .label("begins a second command")
     .secondary(command.name, command.needs())
     .help(format!("begin a new line before `{next}`"))
-    .fix(Fix::guess(format!("begin a new line before `{next}`"), vec![command.broken_before(next_name)]))
+    .fix(Fix { title: format!("begin a new line before `{next}`"), edits, safety })
     .note("a line holds one command")
+}
+
+/// Tells whether a whole command stands at `name`, with nothing or another command behind it.
+fn begins_whole_command(command: &BadCommand<'_>, name: Span) -> bool {
+    let rest = &command.source.text()[name.start as usize..];
+    let mut tokens = Vec::new();
+    lex_line(rest.lines().next().unwrap_or_default(), name.start, |token| {
+        tokens.extend(token.kind.is_significant().then_some(token))
+    });
+    let text = |token: &Token| command.source.slice(token.span);
+    let Some((spec, args)) = tokens.split_first().and_then(|(name, args)| Some((spec::find(text(name))?, args))) else {
+        return false;
+    };
+    let n_own = args.iter().position(|arg| spec::find(text(arg)).is_some()).unwrap_or(args.len());
+    match (&spec.arguments, &args[..n_own]) {
+        (Arguments::Numbers(numbers), own) => {
+            own.len() == numbers.len() && own.iter().all(|arg| numeral::is_number(text(arg)))
+        }
+        (Arguments::FileName(_), [name]) => path::is_png(path::unquoted(command.source, name.span)),
+        (Arguments::FileName(_), _) => false,
+    }
 }

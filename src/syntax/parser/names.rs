@@ -3,12 +3,14 @@
 use crate::diag::words::{listed, proposed, quoted};
 use crate::diag::{Diagnostic, Edit, Fix, Safety, codes};
 use crate::source::{Source, Span};
-use crate::syntax::parser::numeral::{SEPARATORS, numbers_between};
+use crate::syntax::parser::numeral::{SEPARATORS, numbers_between, safety_without_separators};
 use crate::syntax::spec::{self, Arguments, COMMANDS, CommandKind, CommandSpec};
 use crate::syntax::token::{Token, TokenKind};
 
 /// How other languages begin a comment.
 const COMMENT_MARKS: [&str; 7] = ["//", "/*", ";", "--", "%", "'", "!"];
+/// Those that mean nothing else at the start of a word and end with their line.
+const SURE_COMMENT_MARKS: [&str; 3] = ["//", ";", "--"];
 
 /// Reports the line and returns the command that it was meant to be, if that can be told.
 pub(super) fn diagnose(source: &Source, name: &Token, args: &[Token]) -> (Diagnostic, Option<CommandKind>) {
@@ -66,8 +68,9 @@ fn unlike_any(text: &str, span: Span) -> Diagnostic {
 /// Returns the fix that begins a comment with `#`, if the word `text` at `start` begins one as in another language.
 pub(super) fn comment_mark_replaced(text: &str, start: u32) -> Option<Fix> {
     let mark = COMMENT_MARKS.iter().find(|mark| text.starts_with(**mark))?;
-    let place = Span::new(start, start + mark.len() as u32);
-    Some(Fix::guess("begin the comment with `#`", vec![Edit::replace(place, "#")]))
+    let edits = vec![Edit::replace(Span::new(start, start + mark.len() as u32), "#")];
+    let safety = if SURE_COMMENT_MARKS.contains(mark) { Safety::Safe } else { Safety::Unsafe };
+    Some(Fix { title: "begin the comment with `#`".to_owned(), edits, safety })
 }
 
 /// A command that an unknown word was probably meant to be.
@@ -96,9 +99,13 @@ impl Guess {
     }
 
     /// Makes the guess that the first word is `spec` with its first argument glued to it.
-    fn glued(spec: &'static CommandSpec, help: String, repair: String, is_whole: bool) -> Self {
-        let guess = Self::new(spec, "a command and its argument in one word");
-        Self { help, repair, is_whole, ..guess }
+    fn glued(spec: &'static CommandSpec, help: String, repair: String) -> Self {
+        Self { help, repair, ..Self::new(spec, "a command and its argument in one word") }
+    }
+
+    /// Makes the guess that the whole line is `repair`.
+    fn glued_line(spec: &'static CommandSpec, repair: String, safety: Safety) -> Self {
+        Self { safety, is_whole: true, ..Self::glued(spec, proposed(&repair), repair) }
     }
 }
 
@@ -110,7 +117,9 @@ fn guess(text: &str, source: &Source, args: &[Token]) -> Option<Guess> {
         return Some(Guess { help: proposed(spec.name), safety: Safety::Safe, ..guess });
     }
     if let Some(spec) = spec::find(lower.trim_matches(|c: char| !c.is_alphanumeric())) {
-        return Some(Guess::new(spec, "a command is a word without punctuation"));
+        let guess = Guess::new(spec, "a command is a word without punctuation");
+        let is_sure = by_arguments(source, args) == Some(spec.kind);
+        return Some(Guess { safety: if is_sure { Safety::Safe } else { Safety::Unsafe }, ..guess });
     }
     glued(&lower, text, source, args).or_else(|| {
         let fits = by_arguments(source, args);
@@ -128,18 +137,21 @@ fn glued(lower: &str, text: &str, source: &Source, args: &[Token]) -> Option<Gue
     let bare_name = rest.trim_matches(|c| SEPARATORS.contains(&c) || matches!(c, '=' | ':' | '"' | '\''));
     if matches!(spec.arguments, Arguments::FileName(_)) && args.is_empty() && bare_name.ends_with(".png") {
         let repair = format!("{} {bare_name}", spec.name);
-        return Some(Guess::glued(spec, proposed(&repair), repair, true));
+        return Some(Guess::glued_line(spec, repair, Safety::Safe));
     }
     let texts =
-        std::iter::once(rest.trim_start_matches(['=', ':'])).chain(args.iter().map(|arg| source.slice(arg.span)));
-    match numbers_between(texts, &SEPARATORS) {
+        || std::iter::once(rest.trim_start_matches(['=', ':'])).chain(args.iter().map(|arg| source.slice(arg.span)));
+    match numbers_between(texts(), &SEPARATORS) {
         Some(numbers) if numbers.len() == spec.numbers().len() => {
             let repair = format!("{} {}", spec.name, numbers.join(" "));
-            Some(Guess::glued(spec, proposed(&repair), repair, true))
+            // `sphere1` may be the first sphere; an angle is the one number that there is.
+            let is_numbered = rest.starts_with(|c: char| c.is_ascii_digit()) && spec.kind != CommandKind::Fov;
+            let safety = if is_numbered { Safety::Unsafe } else { safety_without_separators(texts()) };
+            Some(Guess::glued_line(spec, repair, safety))
         }
         _ => {
             let help = format!("put a blank between `{}` and {}", spec.name, quoted(rest));
-            Some(Guess::glued(spec, help, format!("{} {rest}", spec.name), false))
+            Some(Guess::glued(spec, help, format!("{} {rest}", spec.name)))
         }
     }
 }

@@ -10,6 +10,9 @@ use crate::syntax::token::{Token, TokenKind};
 
 /// Characters that people put between or around numbers.
 pub(super) const SEPARATORS: [char; 10] = [',', ';', '(', ')', '[', ']', '{', '}', '<', '>'];
+/// Those of them that can mean nothing but that numbers stand apart; the others may belong to another language, which has
+/// another order.
+const PLAIN_SEPARATORS: [char; 4] = [',', ';', '(', ')'];
 /// Characters that look like a minus sign.
 const FALSE_MINUSES: [char; 9] =
     ['\u{2010}', '\u{2011}', '\u{2012}', '\u{2013}', '\u{2014}', '\u{2015}', '\u{2212}', '\u{FE63}', '\u{FF0D}'];
@@ -64,8 +67,15 @@ pub(super) fn is_sign(text: &str) -> bool {
     first && characters.next().is_none()
 }
 
-/// Returns the diagnostic for the text below `span`, which stands where `arg` of `spec` should.
-pub(super) fn diagnose(source: &Source, span: Span, spec: &CommandSpec, arg: &ArgSpec) -> Diagnostic {
+/// Tells how sure it is to take the separators out of texts.
+pub(super) fn safety_without_separators<'t>(mut texts: impl Iterator<Item = &'t str>) -> Safety {
+    let is_plain = |text: &str| !text.contains(|c| SEPARATORS.contains(&c) && !PLAIN_SEPARATORS.contains(&c));
+    if texts.all(is_plain) { Safety::Safe } else { Safety::Unsafe }
+}
+
+/// Returns the diagnostic for the text below `span`, which stands where `arg` of `spec` should. `is_exact` tells whether the
+/// command has as many arguments as it takes.
+pub(super) fn diagnose(source: &Source, span: Span, spec: &CommandSpec, arg: &ArgSpec, is_exact: bool) -> Diagnostic {
     let text = source.slice(span);
     let label = format!("the `{}` of `{}`", arg.name, spec.name);
     let (code, message, help, repair) = match find(text) {
@@ -85,7 +95,8 @@ pub(super) fn diagnose(source: &Source, span: Span, spec: &CommandSpec, arg: &Ar
             None,
         ),
     };
-    let fix = repair.map(|(safety, repair)| Fix::write(safety, span, repair));
+    let is_sure = is_exact && is_decimal_comma(text);
+    let fix = repair.map(|(safety, repair)| Fix::write(if is_sure { Safety::Safe } else { safety }, span, repair));
     Diagnostic::new(code, span, message).label(label).help(help).fix(fix)
 }
 
@@ -99,6 +110,7 @@ pub(super) fn find_commas(command: &BadCommand<'_>) -> Option<Diagnostic> {
     if pieces.len() != args.len() {
         return None;
     }
+    let safety = safety_without_separators(command.args.iter().map(|arg| command.text(arg)));
     let n_found = command.args.iter().map(|arg| command.text(arg).matches(SEPARATORS).count()).sum::<usize>();
     let n_commas = command.args.iter().map(|arg| command.text(arg).matches(',').count()).sum::<usize>();
     let what = match (n_found, n_commas) {
@@ -117,7 +129,7 @@ pub(super) fn find_commas(command: &BadCommand<'_>) -> Option<Diagnostic> {
     let diagnostic = Diagnostic::new(&codes::MALFORMED_NUMBER, first.span, message)
         .label("blanks alone separate numbers")
         .help(help)
-        .fix(command.rewritten(&repair));
+        .fix(command.rewritten(safety, &repair));
     Some(with_separator.fold(diagnostic, |diagnostic, arg| diagnostic.secondary(arg.span, "here too")))
 }
 
@@ -136,7 +148,7 @@ pub(super) fn find_stray_words(command: &BadCommand<'_>) -> Option<Diagnostic> {
     let message = format!("{} among the numbers of `{}`", quoted(command.text(first)), command.spec.name);
     let diagnostic =
         Diagnostic::new(&codes::MALFORMED_NUMBER, first.span, message).label("not a number").help(proposed(&repair));
-    let diagnostic = diagnostic.fix(command.rewritten(&repair));
+    let diagnostic = diagnostic.fix(command.rewritten(Safety::Unsafe, &repair));
     Some(words[1..].iter().fold(diagnostic, |diagnostic, word| diagnostic.secondary(word.span, "here too")))
 }
 
@@ -236,6 +248,14 @@ fn comma(text: &str) -> Option<Finding> {
     }
 }
 
+/// Tells whether a number has a comma that can be nothing but the decimal sign: `1,000` may be a thousand.
+fn is_decimal_comma(text: &str) -> bool {
+    let Some((whole, decimals)) = text.split_once(',') else { return false };
+    let is_digits = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    let whole = whole.trim_start_matches(['+', '-']);
+    is_digits(whole) && is_digits(decimals) && (decimals.len() != 3 || whole == "0")
+}
+
 fn several_points(text: &str) -> Option<Finding> {
     let is_dotted = text.trim_start_matches(['+', '-']).bytes().all(|byte| byte == b'.' || byte.is_ascii_digit());
     (is_dotted && text.matches('.').count() > 1 && text.contains(|c: char| c.is_ascii_digit()))
@@ -319,7 +339,10 @@ fn glued(text: &str) -> Option<Finding> {
     if rest.starts_with(['*', '/', '^', '+', '-']) {
         return Some(Finding::malformed("a scene does not calculate", "write the result as one number"));
     }
-    Finding::repaired(format!("{} follows the number", quoted(rest)), number)
+    let why = format!("{} follows the number", quoted(rest));
+    // The suffix of C can mean nothing else behind a point.
+    let is_suffix = matches!(rest, "f" | "F") && number.contains('.');
+    if is_suffix { Finding::slip(why, number) } else { Finding::repaired(why, number) }
 }
 
 fn no_digits(text: &str) -> Option<Finding> {

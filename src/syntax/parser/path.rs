@@ -34,14 +34,16 @@ pub(super) fn not_a_png(source: &Source, name: &Token) -> Diagnostic {
     Diagnostic::new(&codes::NOT_A_PNG, name.span, format!("the file name {} does not end in `{ENDING}`", quoted(text)))
         .label("not the name of a PNG image")
         .help(repair.as_ref().map_or("add the name of a file, such as `picture.png`".to_owned(), Repair::help))
-        .fix(repair.map(|repair| Fix::write(Safety::Unsafe, name.span, repair.text())))
+        .fix(repair.map(|repair| Fix::write(repair.safety(), name.span, repair.text())))
         .note("images are saved as PNG, whatever their name")
 }
 
 /// What to write in place of a name.
 enum Repair {
-    /// This name.
+    /// This name, of which the ending shows that it was meant.
     Name(String),
+    /// This name; what stands there may end in anything.
+    Guess(String),
     /// This name and, behind it, this comment.
     Commented(String, String),
 }
@@ -49,15 +51,22 @@ enum Repair {
 impl Repair {
     fn text(&self) -> String {
         match self {
-            Self::Name(name) => in_quotes_if_needed(name),
+            Self::Name(name) | Self::Guess(name) => in_quotes_if_needed(name),
             Self::Commented(name, comment) => format!("{name} #{comment}"),
         }
     }
 
     fn help(&self) -> String {
         match self {
-            Self::Name(_) => proposed(&self.text()),
+            Self::Name(_) | Self::Guess(_) => proposed(&self.text()),
             Self::Commented(..) => format!("put a blank before the comment: `{}`", self.text()),
+        }
+    }
+
+    fn safety(&self) -> Safety {
+        match self {
+            Self::Name(_) | Self::Commented(..) => Safety::Safe,
+            Self::Guess(_) => Safety::Unsafe,
         }
     }
 }
@@ -82,7 +91,8 @@ fn repair_ending(name: &str, kind: TokenKind) -> Option<Repair> {
     if lower == "png" || OTHER_ENDINGS.contains(&lower.as_str()) {
         return Some(Repair::Name(format!("{stem}{ENDING}")));
     }
-    Some(Repair::Name(format!("{bare}{ENDING}")))
+    let named = format!("{bare}{ENDING}");
+    Some(if bare == name && !name.contains('.') { Repair::Name(named) } else { Repair::Guess(named) })
 }
 
 /// Returns the name as a scene has to write it.
@@ -114,11 +124,14 @@ pub(super) fn missing(source: &Source, name: Span) -> Diagnostic {
 /// Returns the diagnostic of a quote that the line does not close.
 pub(super) fn unterminated_quote(source: &Source, span: Span) -> Diagnostic {
     let name = unquoted(source, span).trim_end();
-    let repair = if is_png(name) { format!("\"{name}\"") } else { format!("\"{name}{ENDING}\"") };
+    let (repair, safety) = match is_png(name) {
+        true => (format!("\"{name}\""), Safety::Safe),
+        false => (format!("\"{name}{ENDING}\""), Safety::Unsafe),
+    };
     Diagnostic::new(&codes::UNTERMINATED_QUOTE, span, "the quote is not closed on its line")
         .label("begins here")
         .help(format!("close it: {}", quoted(&repair)))
-        .fix(Fix::write(Safety::Unsafe, span, repair))
+        .fix(Fix::write(safety, span, repair))
 }
 
 /// Says what to do about words behind a file name. `surplus` is their place.

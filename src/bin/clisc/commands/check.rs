@@ -8,6 +8,7 @@ use clisc::Compilation;
 use clisc::diag::Severity;
 use clisc::diag::words::counted;
 use clisc::ir::Program;
+use clisc::lint::safe_fixes;
 use clisc::source::Source;
 
 use crate::args::CheckArgs;
@@ -57,6 +58,7 @@ struct Tally {
     n_scenes: usize,
     n_errors: usize,
     n_warnings: usize,
+    n_mendable: usize,
     problems: Problems,
 }
 
@@ -65,11 +67,20 @@ impl Tally {
         self.n_scenes += 1;
         self.n_errors += compilation.n_errors;
         self.n_warnings += compilation.n_warnings;
+        self.n_mendable += safe_fixes(&compilation.diagnostics).count();
     }
 
     fn summary(&self) -> String {
         let scenes = counted(self.n_scenes, "scene");
-        format!("{scenes} checked: {}, {}\n", counted(self.n_errors, "error"), counted(self.n_warnings, "warning"))
+        let mended = match self.n_mendable {
+            0 => String::new(),
+            n => format!("; `clisc lint --fix` mends {n}"),
+        };
+        format!(
+            "{scenes} checked: {}, {}{mended}\n",
+            counted(self.n_errors, "error"),
+            counted(self.n_warnings, "warning")
+        )
     }
 
     fn outcome(&self, deny_warnings: bool) -> Outcome {

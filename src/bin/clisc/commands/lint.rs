@@ -6,9 +6,9 @@ use std::process::ExitCode;
 
 use anyhow::Context;
 use clisc::Compilation;
+use clisc::diag::Severity;
 use clisc::diag::words::counted;
-use clisc::diag::{Fix, Safety, Severity};
-use clisc::lint::{Options, UnknownRule, fix_all, lint};
+use clisc::lint::{Options, UnknownRule, fix_all, lint, safe_fixes};
 use clisc::source::Source;
 
 use crate::args::LintArgs;
@@ -135,11 +135,7 @@ impl Tally {
         self.n_warnings += scene.found.n_warnings;
         self.n_fixed += scene.n_fixes;
         self.n_changed += usize::from(scene.original.is_some());
-        let has_error = scene.found.diagnostics.iter().any(|found| found.code.name.is_none());
-        let is_fixable = |fixes: &[Fix]| fixes.first().is_some_and(|fix| fix.safety == Safety::Safe);
-        if !has_error {
-            self.n_fixable += scene.found.diagnostics.iter().filter(|found| is_fixable(&found.fixes)).count();
-        }
+        self.n_fixable += safe_fixes(&scene.found.diagnostics).count();
     }
 
     fn summary(&self, args: &LintArgs) -> String {
