@@ -2,6 +2,9 @@
 
 mod support;
 
+use std::fs;
+use std::path::Path;
+
 use crate::support::{Folder, scene};
 
 const BAD: &str = "fov 0\nwrite a.png\n";
@@ -337,7 +340,30 @@ fn codes_are_explained() {
     assert!(page.stdout.starts_with("# E0203: missing argument\n"), "{}", page.stdout);
     let unknown = folder.clisc(&["explain", "E0215"]);
     assert_eq!((unknown.code, unknown.stdout.as_str()), (Some(2), ""));
-    assert!(unknown.stderr.contains("there is no code `E0215`; did you mean E0205?"), "{}", unknown.stderr);
+    assert!(unknown.stderr.contains(" `E0215`; did you mean E0205?"), "{}", unknown.stderr);
+}
+
+#[test]
+fn the_language_is_explained_by_commands_and_topics() {
+    let folder = Folder::new();
+    let list = folder.clisc(&["explain"]).stdout;
+    assert!(list.lines().any(|line| line == "sphere      Adds a sphere."), "{list}");
+    let page =
+        fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("grammar/semantics.md")).expect("the page");
+    for heading in page.lines().filter(|line| line.starts_with("##")).map(|line| line.trim_start_matches(['#', ' '])) {
+        let name = heading.split(' ').next().expect("a word").to_lowercase();
+        assert!(list.lines().any(|line| line.starts_with(&format!("{name} "))), "not listed: {name}");
+        let call = folder.clisc(&["explain", &name]);
+        assert_eq!(call.code, Some(0), "{}", call.stderr);
+        assert!(call.stdout.starts_with(&format!("# {heading}\n\n")), "{}", call.stdout);
+    }
+    let shading = folder.clisc(&["explain", "Shading"]).stdout;
+    assert!(shading.contains("Cl · (Cd · (n·L) + Cs · (n·H)^P)"), "{shading}");
+    assert!(shading.ends_with("See also: clisc explain pixels, shadows, levels\n"), "{shading}");
+    assert_eq!(folder.clisc(&["explain", "reflection"]).stdout, folder.clisc(&["explain", "levels"]).stdout);
+    let unknown = folder.clisc(&["explain", "sphare"]);
+    assert_eq!((unknown.code, unknown.stdout.as_str()), (Some(2), ""));
+    assert!(unknown.stderr.contains("did you mean sphere?"), "{}", unknown.stderr);
 }
 
 /// A reader that has seen enough ends nothing: as `clisc ir a.cli --emit tokens | head -1` does.

@@ -15,6 +15,7 @@ mod print;
 mod problems;
 mod progress;
 mod threads;
+mod topics;
 mod version;
 mod walk;
 

@@ -6,13 +6,17 @@ use clap::Args;
 #[derive(Args, Debug)]
 #[command(after_help = EXPLAIN_EXAMPLES)]
 pub struct ExplainArgs {
-    /// The code or the name of the rule, such as E0203 or unused-surface; without it all are listed.
-    #[arg(value_name = "CODE")]
-    pub code: Option<String>,
+    /// A code, a rule, a command of the language or a topic; without it all are listed.
+    #[arg(value_name = "NAME")]
+    pub name: Option<String>,
 }
 
 const EXPLAIN_EXAMPLES: &str = "\
 Examples:
-  clisc explain          every code with its title
-  clisc explain E0203    what it means, a scene that has it, and its repair
-  clisc explain no-fov   the same, by the name of a rule";
+  clisc explain           every code, rule, command and topic
+  clisc explain E0203     what a code means, a scene that has it, and its repair
+  clisc explain no-fov    the same of a rule, by its name
+  clisc explain sphere    what a command of the language does
+  clisc explain shading   how a hit is shaded; also camera, levels, ties…
+
+The commands and topics are the sections of grammar/semantics.md.";

@@ -64,6 +64,7 @@ Examples:
   clisc ir i1.cli --emit commands  show what i1.cli was compiled to
   clisc bench i1.cli               measure time and error of every arithmetic
   clisc explain E0203              explain a code that a message showed
+  clisc explain shading            what the language says on a topic or command
 
 Exit codes: 0 fine, 1 a scene has errors, 2 wrong usage or a fault outside the scene, 130 interrupted.";
 
@@ -130,7 +131,7 @@ commands! {
     "lsp" => Lsp(LspArgs),
     /// Measures run time against error.
     "bench" => Bench(BenchArgs),
-    /// Explains a code, with a failing scene and its repair.
+    /// Explains a code, a rule, a command of the language or a topic.
     "explain" => Explain(ExplainArgs),
     /// Prints the script by which a shell completes commands and options.
     "completions" => Completions(CompletionsArgs),
