@@ -5,11 +5,11 @@
 
 use std::time::Duration;
 
-use crate::diag::{Diagnostic, Severity};
+use crate::diag::{Diagnostic, Severity, codes};
 use crate::ir::Program;
 use crate::lower::{Lowered, Lowering};
 use crate::source::Source;
-use crate::syntax::Runs;
+use crate::syntax::{Runs, editions};
 
 /// A scene as far as it could be understood.
 #[derive(Debug)]
@@ -43,6 +43,13 @@ impl Compilation {
     #[must_use]
     pub fn has_errors(&self) -> bool {
         self.n_errors > 0
+    }
+
+    /// Tells whether the scene is written in another edition of the language: then its lines mean something else, and
+    /// nothing is known of it.
+    #[must_use]
+    pub fn is_of_other_edition(&self) -> bool {
+        self.diagnostics.iter().any(|diagnostic| diagnostic.code == &codes::OTHER_EDITION)
     }
 
     /// Adds what a later stage found.
@@ -118,7 +125,37 @@ fn compile_runs(
     let Lowered { program, diagnostics } = lowering.finish();
     found.add(runs.finish(), diagnostics, keep);
     let (n_errors, n_warnings) = (found.n_errors, found.n_warnings);
-    Compilation { program, diagnostics: found.into_diagnostics(), n_errors, n_warnings, times }
+    let compiled = Compilation { program, diagnostics: found.into_diagnostics(), n_errors, n_warnings, times };
+    with_edition(source, compiled, keep)
+}
+
+/// Asks, where something speaks against the edition 2018, which one a scene is written in. Where it is another, that one
+/// finding stands in place of all that was said of its lines, which have another meaning then; only what no edition reads
+/// is told besides. A good scene is not asked.
+pub(crate) fn with_edition(source: &Source, mut compiled: Compilation, keep: &mut Keep<'_>) -> Compilation {
+    let is_doubtful = |found: &Diagnostic| {
+        found.is_error() || [&codes::ARGUMENT_ORDER, &codes::OUTSIDE_UNIT_RANGE].contains(&found.code)
+    };
+    if !compiled.diagnostics.iter().any(is_doubtful) {
+        return compiled;
+    }
+    let Some(verdict) = editions::judge(source) else { return compiled };
+    let Some(told) = keep(verdict.diagnostic()) else { return compiled };
+    let found = std::mem::take(&mut compiled.diagnostics);
+    let n_listed = found.len();
+    if verdict.is_certain {
+        let is_about_text = |found: &Diagnostic| found.code.id.starts_with("E01");
+        compiled.diagnostics.extend(found.into_iter().filter(is_about_text));
+        (compiled.n_errors, compiled.n_warnings) = (compiled.diagnostics.len(), 0);
+        compiled.program = Program::default();
+    } else {
+        let rests_on = |found: &Diagnostic| verdict.rests_on(found.primary.span);
+        compiled.diagnostics.extend(found.into_iter().filter(|found| found.is_error() || !rests_on(found)));
+        compiled.diagnostics.iter_mut().filter(|found| rests_on(found)).for_each(|found| found.fixes.clear());
+        compiled.n_warnings -= n_listed - compiled.diagnostics.len();
+    }
+    compiled.add(vec![told]);
+    compiled
 }
 
 /// Runs `f` and adds the time it takes to `total`.

@@ -7,6 +7,7 @@ mod tree;
 
 use std::collections::BTreeSet;
 use std::fs;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clisc::diag::render::{Color, render_human, render_json, render_short};
@@ -14,7 +15,9 @@ use clisc::diag::{Diagnostic, Severity, codes, fix};
 use clisc::source::Source;
 use clisc::syntax::spec::COMMANDS;
 use clisc::syntax::{dump_ast, dump_ast_json, dump_tokens, dump_tokens_json, lex, parse};
-use clisc::testing::{Explanation, assert_compiles_soundly, assert_parse_is_stable, assert_tokens_tile, explanation};
+use clisc::testing::{
+    Explanation, Stream, assert_compiles_soundly, assert_parse_is_stable, assert_tokens_tile, explanation,
+};
 use clisc::{MAX_LISTED, compile, ir};
 use proptest::prelude::*;
 
@@ -175,6 +178,211 @@ fn invalid_scenes_raise_the_code_in_their_name() {
         unseen.remove(code.id);
     }
     assert!(unseen.is_empty(), "no scene for {unseen:?}");
+}
+
+/// Returns the folder of the original scenes, where there is one.
+fn originals() -> Option<PathBuf> {
+    let folder = root().join("../shared/course");
+    if !folder.is_dir() {
+        let _ = writeln!(std::io::stderr(), "\nSKIPPED: the original scenes are not at {}", folder.display());
+        return None;
+    }
+    Some(folder)
+}
+
+/// Returns the message of each finding of a scene.
+fn messages(text: &str) -> Vec<String> {
+    compile(&Source::new("test.cli", text)).diagnostics.into_iter().map(|found| found.message).collect()
+}
+
+#[test]
+fn each_original_scene_is_recognised_as_of_its_year() {
+    let Some(folder) = originals() else { return };
+    for (year, n_scenes, editions) in [
+        ("2014", 10, "2014 or 2017"),
+        ("2017", 10, "2014 or 2017"),
+        ("2018", 10, ""),
+        ("2019", 10, "2019"),
+        ("2020", 11, "2020"),
+        ("2022", 11, "2022"),
+    ] {
+        let mut scenes = tree::files_below(&folder.join(year));
+        scenes.retain(|path| path.extension().is_some_and(|ending| ending == "cli"));
+        assert_eq!(scenes.len(), n_scenes, "{year}");
+        for path in scenes {
+            let text = fs::read_to_string(&path).expect("a readable scene");
+            let expected = if editions.is_empty() {
+                Vec::new()
+            } else {
+                vec![format!("this scene is of the edition {editions}; clisc reads that of 2018")]
+            };
+            assert_eq!(messages(&text), expected, "{}", path.display());
+            assert!(compile(&Source::new("test.cli", text)).diagnostics.iter().all(|found| found.fixes.is_empty()));
+        }
+    }
+}
+
+/// What the lines of a scene that is of no other edition may be: ordinary ones of 2018, and one with a slip in it.
+#[test]
+fn one_wrong_line_does_not_make_a_scene_of_another_edition() {
+    let light = "light 1 1 1  0 0 5\n";
+    let surface = "surface 0 .2 0  .4 .1 .1  0 0 0  1 0\n";
+    for (scene, expected) in [
+        // One sphere with the radius first: the light, or another sphere, stands against 2017.
+        (format!("{light}{surface}sphere 1 0 0 -4\n"), vec!["E0402"]),
+        (format!("{surface}sphere 1 0 0 -4\nsphere 0 0 -4 1\n"), vec!["E0402"]),
+        (format!("{surface}sphere 1 0 0 -4\nsphere -2 1 -4 1\n"), vec!["E0402"]),
+        (format!("{surface}sphere 1 0 0 -4\ncylinder 1 0 -4 -1 1\n"), vec!["E0402"]),
+        // One sphere with a sign too many, which in 2017 would not be in view.
+        (format!("{surface}sphere 1 0 -5 -1\n"), vec!["E0402"]),
+        (format!("{surface}sphere 1 2 -4 1\nsphere 2 -1 -5 -1\nsphere 3 0 -6 2\nsphere 1 2 -5 1\n"), vec!["E0402"]),
+        // One command of another year.
+        (format!("{light}{surface}eye 0 0 5\nsphere 0 0 -4 1\n"), vec!["E0201"]),
+        (format!("{light}{surface}cone 0 0 -5 2 1\nsphere 0 0 -4 1\n"), vec!["E0201"]),
+        (format!("{light}{surface}disk 0 0 -5 0 0 1 1\nsphere 0 0 -4 1\n"), vec!["E0201"]),
+        (format!("{light}{surface}sphere 0 0 -4 1\nrender\n"), vec!["E0201"]),
+        (
+            format!("{light}{surface}begin\nvertex 0 0 -4\nvertex 1 0 -4\nvertex 0 1 -4\nend\nsphere 0 0 -4 1\n"),
+            vec!["E0201"; 5],
+        ),
+        // One light with its place first.
+        (format!("light 0 5 0  1 1 1\n{surface}sphere 0 0 -4 1\n"), vec!["W0307"]),
+        (format!("light 0 5 0  1 1 1\n{surface}sphere 1 0 0 -4\nsphere 0 0 -4 1\n"), vec!["W0307", "E0402"]),
+        // Slips that are none of another year.
+        (format!("{light}{surface}sphere 0 0 -4\n"), vec!["E0203"]),
+        (format!("{surface}sphere 0 0 -4 1 1\n"), vec!["E0204"]),
+        (format!("{surface}sphere 0 0 -4 0\n"), vec!["E0402"]),
+        (format!("{surface}shpere 1 0 0 -4\n"), vec!["E0201"]),
+        ("sphere 0 0 -4 1\n".to_owned(), vec!["E0301"]),
+    ] {
+        let text = format!("fov 60\n{scene}write a.png\n");
+        assert_eq!(check(text.clone()), expected, "{text}");
+    }
+}
+
+#[test]
+fn a_scene_of_another_edition_is_one_finding() {
+    let surface = "surface .8 .2 .2  .1 0 0  0 0 0  1 0\n";
+    let light = "light 0 4 5  1 1 1\n";
+    let triangle = "begin\nvertex -1 -1 -4\nvertex 1 -1 -4\nvertex 0 1 -4\nend\n";
+    let camera = "eye 0 0 5\nuvw 1 0 0  0 1 0  0 0 1\n";
+    for (scene, editions) in [
+        (format!("{light}{surface}sphere 1  0 0 -4\nwrite a.png\n"), "2014 or 2017"),
+        (format!("{light}{surface}sphere 1  0 0 -4\n"), "2014 or 2017"),
+        (format!("{surface}sphere 1  0 0 -4\nwrite a.png\n"), "2014 or 2017"),
+        (format!("{surface}{triangle}write a.png\n"), "2014 or 2017"),
+        (format!("{camera}{light}{surface}{triangle}render\n"), "2022"),
+        (format!("{light}{surface}sphere 1  0 0 -4\nrender\n"), "2022"),
+        (format!("{camera}{light}{surface}cone 0 0 -5 2 1\nwrite a.png\n"), "2019"),
+        (format!("{camera}{light}{surface}sphere 1  0 0 -4\nwrite a.png\n"), "2019"),
+        (format!("{camera}{light}{surface}write a.png\n"), "2019 or 2020"),
+        (format!("{camera}{light}{surface}disk 0 0 -5 0 0 1 1\nwrite a.png\n"), "2020"),
+        (format!("{light}{surface}ellipsoid 0 0 -5 1 2 1\nwrite a.png\n"), "2020"),
+        // With mistakes, which are none of this year's.
+        (format!("{light}{surface}sphere 1  0 0 -4\nsphere 1 2\nsurfcae 1 1 1\nwrite a.jpg\n"), "2014 or 2017"),
+        (format!("{light}{surface}{}sphere 0  0 0 -4\nwrite a.png\n", "sphere 1  0 0 -4\n".repeat(20)), "2014 or 2017"),
+        (format!("light 2 2 2  2 2 2\n{light}{surface}{triangle}{triangle}vertex 1\nwrite a.png\n"), "2014 or 2017"),
+    ] {
+        for text in [scene.clone(), scene.replace('\n', "\r\n"), format!("\u{FEFF}# {scene}fov 60\n{scene}")] {
+            assert_eq!(
+                messages(&text),
+                [format!("this scene is of the edition {editions}; clisc reads that of 2018")],
+                "{text}"
+            );
+            let compilation = compile(&Source::new("test.cli", text));
+            assert_eq!((compilation.n_errors, compilation.n_warnings), (1, 0));
+            assert!(compilation.is_of_other_edition() && compilation.diagnostics[0].fixes.is_empty());
+        }
+    }
+    // What is wrong in any year is told too.
+    let latin = [b"# \xFC\n".as_slice(), format!("{light}{surface}sphere 1  0 0 -4\n").as_bytes()].concat();
+    assert_eq!(check(latin), ["E0101", "E0302"]);
+    // A large scene is recognised by its beginning.
+    let large = format!("{surface}{}", "sphere 1  0 0 -4\n".repeat(2 * MAX_LISTED));
+    assert_eq!(check(large), ["E0302"]);
+}
+
+/// What random scenes are made of: a light and a sphere in view, each with its parts.
+fn any_light(stream: &mut Stream) -> [String; 2] {
+    let color =
+        [["1 1 1", "0.8 0.2 0.2", "1 0 0"], ["0.5 0.5 0.5", "0 0.2 0", "1 1 0.9"]][stream.below(2)][stream.below(3)];
+    let place = (0..3).map(|_| format!("{:.1}", stream.between(-9.0, 9.0))).collect::<Vec<_>>().join(" ");
+    [color.to_owned(), place]
+}
+
+fn any_sphere(stream: &mut Stream) -> [String; 2] {
+    let z = stream.between(-12.0, -2.0);
+    let [x, y] = [0.5 * z, 0.5 * z].map(|side| [0.0, stream.between(side, -side)][stream.below(2)]);
+    [format!("{x:.1} {y:.1} {z:.1}"), format!("{:.1}", stream.between(0.1, 1.5))]
+}
+
+/// A sphere alone may be in 2018 what it is elsewhere; with a light or another sphere that is right, one wrong line is one.
+#[test]
+fn random_scenes_with_a_slip_stay_of_2018() {
+    let mut stream = Stream::new(2018);
+    for _ in 0..3000 {
+        let mut lines = vec!["fov 60".to_owned(), "surface .1 0 0  .8 .2 .2  0 0 0  1 0".to_owned()];
+        for _ in 0..1 + stream.below(2) {
+            let [color, place] = any_light(&mut stream);
+            lines.push(format!("light {color}  {place}"));
+        }
+        for _ in 0..1 + stream.below(3) {
+            let [center, radius] = any_sphere(&mut stream);
+            lines.push(format!("sphere {center}  {radius}"));
+        }
+        let [center, radius] = any_sphere(&mut stream);
+        let [color, place] = any_light(&mut stream);
+        lines.push(match stream.below(8) {
+            0 => format!("sphere {radius} {center}"),
+            1 => format!("sphere {center} -{radius}"),
+            2 => format!("light {place} {color}"),
+            3 => format!("eye {place}"),
+            4 => "render".to_owned(),
+            5 => format!("cone {center} 2 {radius}"),
+            6 => format!("sphere {center}"),
+            _ => format!("triangle {center}"),
+        });
+        let text = lines.join("\n") + "\nwrite a.png\n";
+        let found = check(text.clone());
+        assert!(!found.contains(&"E0302") && !found.contains(&"W0308"), "{found:?}\n{text}");
+    }
+}
+
+/// In view and lit, a scene of another order is recognised however short it is; with a few mistakes of its own as well.
+#[test]
+fn random_scenes_of_another_order_are_recognised() {
+    let mut stream = Stream::new(2017);
+    for _ in 0..3000 {
+        let mut lines = vec!["fov 60".to_owned(), "surface .8 .2 .2  .1 0 0  0 0 0  1 0".to_owned()];
+        for _ in 0..stream.below(3) {
+            let [color, place] = any_light(&mut stream);
+            lines.push(format!("light {place}  {color}"));
+        }
+        for _ in 0..1 + stream.below(4) {
+            let [center, radius] = any_sphere(&mut stream);
+            lines.push(format!("sphere {radius} {center}"));
+        }
+        for _ in 0..stream.below(3) {
+            lines.push(
+                ["sphere 1 2", "surfcae 1 1 1", "sphere -1 0 0 -5", "light 0 4 5 255 255 255", "foo"][stream.below(5)]
+                    .to_owned(),
+            );
+        }
+        let text = lines.join("\n") + "\nwrite a.png\n";
+        assert_eq!(messages(&text), ["this scene is of the edition 2014 or 2017; clisc reads that of 2018"], "{text}");
+    }
+}
+
+#[test]
+fn a_scene_that_only_looks_like_another_edition_is_suspected() {
+    let text =
+        "fov 60\nlight 0 5 -2  1 1 1\nlight 3 -1 2  .5 .5 .5\nsurface .8 .2 .2  .1 0 0  0 0 0  1 0\nwrite a.png\n";
+    assert_eq!(messages(text), ["this scene looks like one of the edition 2014 or 2017, not of 2018"]);
+    let compilation = compile(&Source::new("test.cli", text));
+    assert_eq!((compilation.n_errors, compilation.n_warnings), (0, 1));
+    assert_eq!(compilation.diagnostics[0].fixes, []);
+    assert_eq!(compilation.program.lights.len(), 2, "it can be rendered");
+    assert_eq!(check(text.replace("write", "sphere 0 0 -4 1\nwrite")), ["W0307", "W0307"]);
 }
 
 #[test]

@@ -165,6 +165,23 @@ fn nothing_is_fixed_over_an_error() {
     assert_eq!(found(&text), ["5: L0201", "6: E0203"].map(String::from).map(|found| found.replace("E0203", "E0205")));
 }
 
+/// Tells whether a fix of some finding of a scene is offered as safe.
+fn has_safe_fix(text: &str) -> bool {
+    let found = lint(&Source::new("ball.cli", text), &options()).diagnostics;
+    assert!(!found.is_empty(), "{text}");
+    found.iter().flat_map(|found| &found.fixes).any(|fix| fix.safety == Safety::Safe)
+}
+
+#[test]
+fn a_scene_of_another_edition_is_not_linted() {
+    let text = "light 0 0 0  1 1 1\nsurface 0.8 0.2 0.2  0.1 0 0  0 0 0  1  0\nsphere 1  0 0 -4\nsphere 1  0 0 -4\n\
+        surface 0.8 0.2 0.2  0.1 0 0  0 0 0  1  0\nwrite cube.png # clisc: allow(no-fov)\n";
+    assert_eq!(found(text), ["3: E0302"]);
+    assert!(!has_safe_fix(text));
+    assert_eq!(clisc::lint::check(&Source::new("ball.cli", text), &options()).diagnostics.len(), 1);
+    assert_eq!(clisc::format::format(&Source::new("ball.cli", text)), text.as_bytes(), "nor formatted");
+}
+
 #[test]
 fn one_cause_is_one_finding() {
     for (more, expected) in [

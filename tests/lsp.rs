@@ -492,6 +492,20 @@ fn all_safe_fixes_are_one_action() {
     }
 }
 
+/// Names and colours of the command table are those of 2018: in a scene of another edition they would be wrong.
+#[test]
+fn a_scene_of_another_edition_is_one_finding_without_a_fix() {
+    let mut editor = Editor::open(
+        "fov 60\nlight 0 4 5  1 1 1\nsurface .8 .2 .2  .1 0 0  0 0 0  1 0\nsphere 1  0 0 -4\nwrite a.png\n",
+    );
+    assert_eq!(editor.codes(), ["E0302"]);
+    let all = json!({ "range": range((0, 0), (5, 0)), "context": { "diagnostics": [] } });
+    assert_eq!(editor.ask_about("codeAction", all), json!([]));
+    assert_eq!(editor.ask_about("documentColor", json!({})), json!([]));
+    assert_eq!(editor.ask_about("inlayHint", json!({ "range": range((0, 0), (5, 0)) })), json!([]));
+    assert_eq!(editor.ask_about("formatting", json!({ "options": { "tabSize": 4, "insertSpaces": true } })), json!([]));
+}
+
 #[test]
 fn a_comment_allows_a_finding_as_everywhere() {
     let mut editor = Editor::open("light 1 1 1 0 0 5\nwrite \"my scene.png\"\n");

@@ -108,6 +108,7 @@ codes! {
     UNTERMINATED_QUOTE = Error "E0210": "quote that is not closed";
     // E03: meaning.
     NO_SURFACE = Error "E0301": "object before any surface";
+    OTHER_EDITION = Error "E0302": "a scene of another edition of the language";
     // E04: values.
     FOV_OUT_OF_RANGE = Error "E0401": "field of view out of range";
     RADIUS_NOT_POSITIVE = Error "E0402": "radius not above 0";
@@ -125,6 +126,7 @@ codes! {
     BEHIND_LAST_WRITE = Warning "W0305" "behind-last-write": "commands behind the last `write`";
     WRITTEN_TWICE = Warning "W0306" "written-twice": "two `write`s of one name";
     ARGUMENT_ORDER = Warning "W0307" "argument-order": "a light's place before its colour";
+    PERHAPS_OTHER_EDITION = Warning "W0308" "other-edition": "a scene that looks like one of another edition";
 }
 
 /// Returns the code with this id, upper or lower case.

@@ -5,9 +5,9 @@
 use crate::exec::refused_names;
 use crate::lower::Lowering;
 use crate::source::{Source, Span};
-use crate::syntax::Runs;
 use crate::syntax::ast::Shape;
 use crate::syntax::spec::CommandKind;
+use crate::syntax::{Runs, editions};
 
 /// What the compiler knows of a scene.
 #[derive(Debug, Default)]
@@ -16,7 +16,7 @@ pub(super) struct Known {
     pub(super) commands: Vec<(Span, CommandKind)>,
     /// A byte of each line with an error, in order.
     pub(super) errors: Vec<u32>,
-    /// Whether no line can be read, because the file is not UTF-8 at all.
+    /// Whether no line can be read, because the file is not UTF-8 at all, or of another edition of the language.
     pub(super) is_unreadable: bool,
 }
 
@@ -43,5 +43,7 @@ pub(super) fn know(source: &Source) -> Known {
     let late = runs.finish().into_iter().chain(lowered.diagnostics).chain(refused_names(&lowered.program));
     known.errors.extend(late.filter(|found| found.is_error()).map(|error| error.primary.span.start));
     known.errors.sort_unstable();
+    let is_other = || editions::judge(source).is_some_and(|verdict| verdict.is_certain);
+    known.is_unreadable |= !known.errors.is_empty() && is_other();
     known
 }

@@ -13,10 +13,13 @@ pub struct ColorPlace {
     pub rgb: [f64; 3],
 }
 
-/// Returns the colours of the whole commands of a scene, in order.
+/// Returns the colours of the whole commands of a scene, in order; none in a scene of another edition.
 #[must_use]
 pub fn colors(document: &Document) -> Vec<ColorPlace> {
     let mut places = Vec::new();
+    if document.is_of_other_edition() {
+        return places;
+    }
     for command in document.file().commands() {
         let Some(kind) = super::document::kind_of(&command).filter(|_| !command.numbers.is_empty()) else { continue };
         let mut groups = kind.spec().grouped().filter(|(_, group)| group.is_color).peekable();

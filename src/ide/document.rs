@@ -8,8 +8,8 @@ use crate::ide::position::{Lines, Position, Unit};
 use crate::lint::{Options, lint};
 use crate::source::{Source, SourceError, Span};
 use crate::syntax::ast::{self, File, Shape};
-use crate::syntax::parse;
 use crate::syntax::spec::CommandKind;
+use crate::syntax::{editions, parse};
 
 /// One step of editing.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -27,6 +27,7 @@ pub struct Document {
     source: Source,
     lines: Lines,
     file: OnceCell<File>,
+    is_of_other_edition: OnceCell<bool>,
 }
 
 impl Document {
@@ -36,7 +37,8 @@ impl Document {
     /// [`SourceError::TooLarge`] from 4 GiB on.
     pub fn new(name: &str, text: String) -> Result<Self, SourceError> {
         let lines = Lines::new(&text);
-        Ok(Self { source: Source::from_bytes(name, text.into_bytes())?, lines, file: OnceCell::new() })
+        let source = Source::from_bytes(name, text.into_bytes())?;
+        Ok(Self { source, lines, file: OnceCell::new(), is_of_other_edition: OnceCell::new() })
     }
 
     /// Carries out changes, one after the other: the places of each are those that the one before has left.
@@ -101,6 +103,13 @@ impl Document {
     #[must_use]
     pub fn file(&self) -> &File {
         self.file.get_or_init(|| parse(&self.source).file)
+    }
+
+    /// Tells whether the scene is written in another edition of the language, so that its numbers mean something else than
+    /// the command table says.
+    pub(super) fn is_of_other_edition(&self) -> bool {
+        let judge = || editions::judge(&self.source).is_some_and(|verdict| verdict.is_certain);
+        *self.is_of_other_edition.get_or_init(judge)
     }
 
     /// Does the work of [`diagnostics_of`].

@@ -16,10 +16,14 @@ pub struct Hint {
     pub doc: &'static str,
 }
 
-/// Returns a name for each group of numbers of the whole commands that start in `span`, in order.
+/// Returns a name for each group of numbers of the whole commands that start in `span`, in order; none in a scene of another
+/// edition.
 #[must_use]
 pub fn hints(document: &Document, span: Span) -> Vec<Hint> {
     let mut hints = Vec::new();
+    if document.is_of_other_edition() {
+        return hints;
+    }
     for command in document.commands_in(span) {
         let Some(kind) = kind_of(&command).filter(|_| !command.numbers.is_empty()) else { continue };
         let spans = argument_spans(document.source(), command.span);

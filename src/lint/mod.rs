@@ -63,6 +63,10 @@ pub fn leave_out_allowed(source: &Source, options: &Options, compilation: &mut C
 pub fn lint(source: &Source, options: &Options) -> Compilation {
     let mut sieve = Sieve::new(source, options);
     let mut compilation = check_with(&mut sieve);
+    if compilation.is_of_other_edition() {
+        // Its lines mean something else than the rules would take them for.
+        return compilation;
+    }
     let mut found = Vec::new();
     check_rules(source, options, std::mem::take(&mut compilation.program), &mut found);
     found = sieve.keep_all(found);

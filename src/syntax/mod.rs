@@ -5,6 +5,7 @@
 pub mod ast;
 mod directive;
 mod dump;
+pub mod editions;
 mod lexer;
 mod parser;
 pub mod spec;

@@ -202,11 +202,11 @@ pub fn find(name: &str) -> Option<&'static CommandSpec> {
 /// The most numbers that a command takes.
 pub const MAX_NUMBERS: usize = 11;
 
-const fn world(name: &'static str, doc: &'static str) -> ArgSpec {
+pub(super) const fn world(name: &'static str, doc: &'static str) -> ArgSpec {
     ArgSpec { name, unit: Unit::World, range: Range::Any, doc }
 }
 
-const fn share(name: &'static str, doc: &'static str) -> ArgSpec {
+pub(super) const fn share(name: &'static str, doc: &'static str) -> ArgSpec {
     ArgSpec { name, unit: Unit::Share, range: Range::UsuallyUnit, doc }
 }
 
@@ -218,7 +218,8 @@ const fn color(symbol: &'static str, name: &'static str) -> Group {
     Group { symbol, name, n_numbers: 3, is_color: true }
 }
 
-const RADIUS: ArgSpec = ArgSpec { name: "radius", unit: Unit::World, range: Range::Positive, doc: "the radius" };
+pub(super) const RADIUS: ArgSpec =
+    ArgSpec { name: "radius", unit: Unit::World, range: Range::Positive, doc: "the radius" };
 
 /// Every command, in the order of [`CommandKind`].
 pub static COMMANDS: [CommandSpec; 7] = [

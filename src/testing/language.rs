@@ -2,12 +2,13 @@
 //!
 //! Each function panics when its law is broken; property tests and fuzz targets feed them.
 
+use crate::compile::with_edition;
 use crate::diag::render::{Color, render_human, render_json, render_short};
 use crate::diag::{Code, Diagnostic, Severity, fix};
 use crate::lower::lower;
 use crate::source::Source;
 use crate::syntax::{Parse, Runs, ast, lex, parse, parse_in_chunks};
-use crate::{Compilation, MAX_LISTED, compile, compile_in_chunks};
+use crate::{Compilation, MAX_LISTED, Times, compile, compile_in_chunks};
 
 /// Makes a source of a few bytes.
 fn source(bytes: &[u8]) -> Source {
@@ -101,18 +102,23 @@ fn assert_stages_make(source: &Source, compilation: &Compilation) {
     let mut found = parse.diagnostics;
     found.extend(lowered.diagnostics);
     found.sort_by_key(|diagnostic| diagnostic.primary.span.start);
+    let n_errors = found.iter().filter(|diagnostic| diagnostic.is_error()).count();
+    let n_warnings = found.len() - n_errors;
+    let (program, times) = (lowered.program, Times::default());
+    let staged = Compilation { program, diagnostics: found, n_errors, n_warnings, times };
+    let staged = with_edition(source, staged, &mut Some);
     for chunk_bytes in [1, 64] {
         let in_chunks = compile_in_chunks(source, chunk_bytes);
-        assert_eq!(in_chunks.program, lowered.program, "compiled in chunks of {chunk_bytes}");
+        assert_eq!(in_chunks.program, staged.program, "compiled in chunks of {chunk_bytes}");
         assert_eq!(in_chunks.diagnostics, compilation.diagnostics, "compiled in chunks of {chunk_bytes}");
     }
-    assert_eq!(compilation.program, lowered.program, "compiled as a whole");
-    if found.len() <= MAX_LISTED {
-        assert_eq!(compilation.diagnostics, found, "compiled as a whole");
+    assert_eq!(compilation.program, staged.program, "compiled as a whole");
+    if staged.diagnostics.len() <= MAX_LISTED {
+        assert_eq!(compilation.diagnostics, staged.diagnostics, "compiled as a whole");
     }
     let n_unlisted: usize =
         [Severity::Error, Severity::Warning].map(|severity| compilation.n_unlisted(severity)).iter().sum();
-    assert_eq!(compilation.diagnostics.len() + n_unlisted, found.len());
+    assert_eq!(compilation.diagnostics.len() + n_unlisted, staged.diagnostics.len());
 }
 
 fn assert_is_sound(source: &Source, diagnostic: &Diagnostic) {

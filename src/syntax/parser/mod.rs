@@ -288,7 +288,7 @@ impl<'s> Chunk<'s> {
     fn parse_good_line(&mut self) -> bool {
         let [name, args @ ..] = self.tokens.as_slice() else { return true };
         let Some(spec) = spec::find(self.source.slice(name.span)) else { return false };
-        let Some(numbers) = read_arguments(self.source, spec, args) else { return false };
+        let Some(numbers) = read_arguments(self.source, &spec.arguments, args) else { return false };
         let span = args.last().map_or(name.span, |last| name.span.to(last.span));
         self.part.push(span, Shape::Whole(spec.kind), &numbers[..spec.numbers().len()]);
         true
@@ -338,12 +338,12 @@ impl<'s> Chunk<'s> {
 }
 
 /// Returns the numbers among the arguments if all arguments are as they should be.
-fn read_arguments(source: &Source, spec: &CommandSpec, args: &[Token]) -> Option<[f64; MAX_NUMBERS]> {
-    if !grammar::accepts(&spec.arguments, args) {
+pub(super) fn read_arguments(source: &Source, arguments: &Arguments, args: &[Token]) -> Option<[f64; MAX_NUMBERS]> {
+    if !grammar::accepts(arguments, args) {
         return None;
     }
     let mut numbers = [0.0; MAX_NUMBERS];
-    match spec.arguments {
+    match arguments {
         Arguments::Numbers(_) => {
             for (number, arg) in numbers.iter_mut().zip(args) {
                 *number = source.slice(arg.span).parse().ok().filter(|number: &f64| number.is_finite())?;
