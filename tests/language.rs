@@ -386,6 +386,51 @@ fn a_scene_that_only_looks_like_another_edition_is_suspected() {
 }
 
 #[test]
+fn words_of_other_languages_have_an_answer_of_their_own() {
+    for (line, help) in [
+        (
+            "camera 0 0 5",
+            "the eye is at the origin and looks along −z: move the objects and lights instead, and set the angle with `fov`",
+        ),
+        (
+            "LookAt 0 0 5 0 0 0 0 1 0",
+            "the eye is at the origin and looks along −z: move the objects and lights instead, and set the angle with `fov`",
+        ),
+        (
+            "camera { location <0, 0, 5> }",
+            "the eye is at the origin and looks along −z: move the objects and lights instead, and set the angle with `fov`",
+        ),
+        ("point_light 0 5 0 1 1 1", "write `light r g b x y z`: the colour comes before the place"),
+        ("ball 0 0 -4 1", "write `sphere x y z radius`"),
+        ("save b.png", "write `write name.png`, which renders the scene as it then stands"),
+        ("translate 0 0 -4", "there are no transformations: write each place as it is to be"),
+        ("triangle 0 0 0 1 0 0 0 1 0", "there are no triangles: the objects are spheres and upright cylinders"),
+        ("foobar 1", "the commands are fov, background, light, surface, sphere, cylinder, write"),
+        // A slip stays one.
+        ("lihgt 1 1 1 0 0 5", "did you mean `light`?"),
+        (
+            "surf 1 1 1",
+            "write `surface Car Cag Cab Cdr Cdg Cdb Csr Csg Csb P Krefl` before the objects: ambient, diffuse and \
+          specular colour, exponent, reflection",
+        ),
+        ("cyl 1 0 0 0 1", "did you mean `cylinder`?"),
+        ("spheres 0 0 -4 1", "did you mean `sphere`?"),
+    ] {
+        let found = compile(&Source::new("test.cli", around(line))).diagnostics;
+        let told: Vec<_> = found.iter().map(|found| (found.code.id, found.help.as_deref())).collect();
+        assert_eq!(told, [("E0201", Some(help))], "{line}");
+    }
+    let fixed = |line: &str| {
+        let found = compile(&Source::new("test.cli", around(line))).diagnostics;
+        found[0].fixes.first().map(|offered| fix::apply(&around(line), [offered]).text)
+    };
+    assert_eq!(fixed("ball 0 0 -4 1"), Some(around("sphere 0 0 -4 1")));
+    assert_eq!(fixed("save b.png"), Some(around("write b.png")));
+    assert_eq!(fixed("point_light 0 5 0 1 1 1"), None, "its order is not known");
+    assert_eq!(fixed("ball 1 0 0"), None);
+}
+
+#[test]
 fn line_ends_and_marks_do_not_matter() {
     let scene = around("# π");
     assert_eq!(check(scene.clone()), [""; 0]);

@@ -6,6 +6,7 @@
 //! chunks of whole lines that are parsed side by side.
 
 mod errors;
+mod foreign;
 mod grammar;
 mod names;
 mod numeral;

@@ -3,6 +3,7 @@
 use crate::diag::words::{listed, proposed, quoted};
 use crate::diag::{Diagnostic, Edit, Fix, Safety, codes};
 use crate::source::{Source, Span};
+use crate::syntax::parser::foreign::{self, Foreign};
 use crate::syntax::parser::numeral::{SEPARATORS, numbers_between, safety_without_separators};
 use crate::syntax::spec::{self, Arguments, COMMANDS, CommandKind, CommandSpec};
 use crate::syntax::token::{Token, TokenKind};
@@ -28,6 +29,9 @@ pub(super) fn diagnose(source: &Source, name: &Token, args: &[Token]) -> (Diagno
         });
         return (begins_with_number(text, name.span).fix(named), meant);
     }
+    if let Some(foreign) = foreign::find(&bare(text)) {
+        return (known_elsewhere(source, name, args, foreign), foreign.meant);
+    }
     if let Some(guess) = guess(text, source, args) {
         let message = format!("unknown command {}", quoted(text));
         let place = if guess.is_whole { args.iter().fold(name.span, |span, arg| span.to(arg.span)) } else { name.span };
@@ -38,6 +42,22 @@ pub(super) fn diagnose(source: &Source, name: &Token, args: &[Token]) -> (Diagno
         return (diagnostic, Some(guess.spec.kind));
     }
     (unlike_any(text, name.span), by_arguments(source, args))
+}
+
+/// Returns a word in lower case and without brackets and the like.
+fn bare(text: &str) -> String {
+    text.trim_matches(|c: char| SEPARATORS.contains(&c) || matches!(c, ':' | '=' | '"' | '\'' | '.')).to_lowercase()
+}
+
+/// Reports a word that is a command elsewhere. Where the command that does the same takes just these arguments it is offered;
+/// not for a light, whose place mostly comes first elsewhere.
+fn known_elsewhere(source: &Source, name: &Token, args: &[Token], foreign: &Foreign) -> Diagnostic {
+    let text = source.slice(name.span);
+    let same = foreign.meant.filter(|kind| by_arguments(source, args) == Some(*kind) && *kind != CommandKind::Light);
+    Diagnostic::new(&codes::UNKNOWN_COMMAND, name.span, format!("unknown command {}", quoted(text)))
+        .label(foreign.label)
+        .help(foreign.help)
+        .fix(same.map(|kind| Fix::write(Safety::Unsafe, name.span, kind.name())))
 }
 
 fn begins_with_number(text: &str, span: Span) -> Diagnostic {
