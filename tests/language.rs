@@ -386,6 +386,36 @@ fn a_scene_that_only_looks_like_another_edition_is_suspected() {
 }
 
 #[test]
+fn a_field_of_view_in_radians_is_suspected() {
+    for (angle, degrees) in [
+        ("1.0472", Some(60)),
+        ("1.05", Some(60)),
+        ("1.047", Some(60)),
+        ("0.785398", Some(45)),
+        ("0.79", Some(45)),
+        (".5236", Some(30)),
+        ("1.5707963267948966", Some(90)),
+        ("2.0944", Some(120)),
+        ("0.873", Some(50)),
+        ("1", None),
+        ("1.5", None),
+        ("2.0", None),
+        ("0.001", None),
+        ("0.35", None),
+        ("1.0", None),
+        ("1.001", None),
+        ("3.1", None),
+        ("10.472", None),
+        ("1.0472e-3", None),
+    ] {
+        let found = messages(&format!("fov {angle}\nwrite a.png\n"));
+        let expected = degrees
+            .map(|degrees| format!("a field of view of {angle} degrees looks like {degrees} degrees in radians"));
+        assert_eq!(found, Vec::from_iter(expected));
+    }
+}
+
+#[test]
 fn words_of_other_languages_have_an_answer_of_their_own() {
     for (line, help) in [
         (

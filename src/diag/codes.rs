@@ -127,6 +127,7 @@ codes! {
     WRITTEN_TWICE = Warning "W0306" "written-twice": "two `write`s of one name";
     ARGUMENT_ORDER = Warning "W0307" "argument-order": "a light's place before its colour";
     PERHAPS_OTHER_EDITION = Warning "W0308" "other-edition": "a scene that looks like one of another edition";
+    FOV_IN_RADIANS = Warning "W0309" "fov-in-radians": "a field of view that looks like radians";
 }
 
 /// Returns the code with this id, upper or lower case.

@@ -4,7 +4,7 @@ use crate::diag::words::{named, proposed, quoted, shortened};
 use crate::diag::{Code, Diagnostic, Edit, Fix, Safety, codes};
 use crate::source::{Source, Span};
 use crate::syntax::spec::{CommandKind, CommandSpec, Range};
-use crate::syntax::{argument_spans, ast};
+use crate::syntax::{argument_spans, ast, editions};
 
 /// Checks the numbers of a whole command and appends what is wrong with them. Tells whether the scene may hold them.
 pub(super) fn check(source: &Source, kind: CommandKind, command: &ast::Command<'_>, acc: &mut Vec<Diagnostic>) -> bool {
@@ -18,6 +18,7 @@ pub(super) fn check(source: &Source, kind: CommandKind, command: &ast::Command<'
     slow.check_ranges(acc);
     slow.check_order(acc);
     slow.check_unit_ranges(acc);
+    slow.check_radians(acc);
     !acc[n_before..].iter().any(Diagnostic::is_error)
 }
 
@@ -146,27 +147,24 @@ impl Values<'_> {
         format!("{} {}", self.spec.name, texts.join(" "))
     }
 
-    /// Tells whether the numbers of a light look like its place and then its colour: those in the place of a colour make
-    /// none, and those in the place of its place would. A light brighter than 1 is none, unless all else says so.
-    fn has_place_before_color(&self, outside: &[usize]) -> bool {
-        let (CommandKind::Light, &[r, g, b, x, y, z]) = (self.spec.kind, self.numbers) else { return false };
-        let is_color = [x, y, z].iter().all(|channel| (0.0..=1.0).contains(channel));
-        let n_lit = [x, y, z].iter().filter(|channel| **channel > 0.0).count();
-        let has_negative = [r, g, b].iter().any(|channel| *channel < 0.0);
-        is_color && ((has_negative && n_lit > 0) || (n_lit >= 2 && !self.is_in_bytes(outside)))
+    /// Returns the colour and the place of a light.
+    fn light(&self) -> Option<[[f64; 3]; 2]> {
+        match (self.spec.kind, self.numbers) {
+            (CommandKind::Light, &[r, g, b, x, y, z]) => Some([[r, g, b], [x, y, z]]),
+            _ => None,
+        }
     }
 
     fn place_before_color(&self) -> Diagnostic {
-        let in_order = [3, 4, 5, 0, 1, 2];
         Diagnostic::new(
             &codes::ARGUMENT_ORDER,
             self.spans[0].to(self.spans[2]),
             "the colour of this `light` looks like a place, and its place like a colour",
         )
         .label("a colour comes first")
-        .help(proposed(&self.reordered(&in_order)))
+        .help(proposed(&self.reordered(&COLOR_FIRST)))
         .note("other programs had the place first")
-        .fix(self.in_order(&in_order))
+        .fix(self.in_order(&COLOR_FIRST))
     }
 
     /// Returns the command with its arguments in another order.
@@ -208,12 +206,11 @@ impl Values<'_> {
     /// Reports the colours and coefficients outside 0…1, all of a command at once.
     fn check_unit_ranges(&self, acc: &mut Vec<Diagnostic>) {
         let args = self.spec.numbers();
-        let is_outside = |&index: &usize| {
-            args[index].range.allows(self.numbers[index]) && !args[index].range.expects(self.numbers[index])
-        };
+        let is_outside =
+            |&index: &usize| args[index].range == Range::UsuallyUnit && !args[index].range.expects(self.numbers[index]);
         let outside: Vec<_> = (0..args.len()).filter(is_outside).collect();
         let Some((&first, others)) = outside.split_first() else { return };
-        if self.has_place_before_color(&outside) {
+        if self.light().is_some_and(|[color, place]| editions::is_place_before_color(color, place)) {
             return acc.push(self.place_before_color());
         }
         let names = named(outside.iter().map(|&index| args[index].name));
@@ -229,10 +226,52 @@ impl Values<'_> {
             diagnostic.secondary(self.spans[index], format!("`{}`", args[index].name))
         };
         let diagnostic = others.iter().fold(diagnostic, label);
-        acc.push(if self.is_in_bytes(&outside) {
-            diagnostic.help("if the colour is on a scale to 255, divide it by 255").fix(self.divided_by_255(first))
-        } else {
-            diagnostic
+        if !self.is_in_bytes(&outside) {
+            return acc.push(diagnostic);
+        }
+        // White light at a place of whole numbers reads as a colour on a scale to 255 at the place 1 1 1, and the other way.
+        let is_color = |place: [f64; 3]| place.iter().all(|channel| *channel > 0.0 && *channel <= 1.0);
+        let by_255 = "if the colour is on a scale to 255, divide it by 255";
+        acc.push(match self.light() {
+            Some([_, place]) if is_color(place) => {
+                let reordered = proposed(&self.reordered(&COLOR_FIRST));
+                let diagnostic = diagnostic.help(format!("{by_255}; if the place came first, {reordered}"));
+                diagnostic.fix(self.divided_by_255(first)).fix(self.in_order(&COLOR_FIRST))
+            }
+            _ => diagnostic.help(by_255).fix(self.divided_by_255(first)),
         });
+    }
+
+    /// Reports a field of view that is a usual angle in radians.
+    fn check_radians(&self, acc: &mut Vec<Diagnostic>) {
+        let (CommandKind::Fov, &[angle]) = (self.spec.kind, self.numbers) else { return };
+        let Some(degrees) = degrees_of(angle, self.text(0)) else { return };
+        let message = format!("a field of view of {} degrees looks like {degrees} degrees in radians", self.shown(0));
+        let repair = degrees.to_string();
+        acc.push(
+            self.at(&codes::FOV_IN_RADIANS, 0, message)
+                .label("hardly anything is seen at such an angle")
+                .help(format!("`fov` is in degrees: {}", proposed(&format!("{} {repair}", self.spec.name))))
+                .fix(Fix::write(Safety::Unsafe, self.spans[0], repair)),
+        );
+    }
+}
+
+/// The arguments of a light in their order, by their places where the place came first.
+const COLOR_FIRST: [usize; 6] = [3, 4, 5, 0, 1, 2];
+
+/// Returns the usual angle in degrees that `angle`, written as `text`, is in radians; `None` when it is none. A short
+/// number must be one of the commonest angles: by chance it is near some angle.
+fn degrees_of(angle: f64, text: &str) -> Option<u32> {
+    const COMMONEST: [u32; 6] = [30, 45, 60, 75, 90, 120];
+    let decimals = text.split_once('.').map(|(_, decimals)| decimals)?;
+    let n_decimals = decimals.bytes().all(|byte| byte.is_ascii_digit()).then_some(decimals.len())?;
+    // Rounded or cut off, it is within one step of its last digit.
+    let step = (0..n_decimals.min(12)).fold(1.0, |step, _| step / 10.0);
+    let is_meant = |degrees: &u32| (f64::from(*degrees).to_radians() - angle).abs() < step;
+    match n_decimals {
+        0 | 1 => None,
+        2 => COMMONEST.into_iter().find(is_meant),
+        _ => (10..180).step_by(5).find(is_meant),
     }
 }

@@ -84,7 +84,9 @@ impl Range {
     pub fn expects(self, value: f64) -> bool {
         match self {
             Self::UsuallyUnit => (0.0..=1.0).contains(&value),
-            Self::Any | Self::Positive | Self::NotNegative | Self::PositiveBelow(_) => self.allows(value),
+            // An angle in degrees below this is probably one in radians.
+            Self::PositiveBelow(_) => self.allows(value) && value > std::f64::consts::PI,
+            Self::Any | Self::Positive | Self::NotNegative => self.allows(value),
         }
     }
 }
