@@ -111,7 +111,7 @@ fn safe_fixes_leave_every_image_as_it_is() {
 fn fixes_are_carried_out_until_nothing_is_left() {
     let text = scene(
         "surface 1 0 0  0 0 0  0 0 0  1  0\nsurface 1 0 0  0 0 0  0 0 0  1  0 # why\nsurface 1 0 0  0 0 0  0 0 0  1  0\n\
-         light 0 0 0  1 1 1\nsphere 0 0 -4 1\nsphere 0 0 -4 0.5 # inside\nbackground 0 0 1\nbackground 0 0 0\n",
+         light 0 0 0  9 9 9\nsphere 0 0 -4 1\nsphere 0 0 -4 0.5 # inside\nbackground 0 0 1\nbackground 0 0 0\n",
     )
     .replacen("fov 60\n", "", 1);
     let source = Source::new("ball.cli", text.as_str());
@@ -170,6 +170,56 @@ fn has_safe_fix(text: &str) -> bool {
     let found = lint(&Source::new("ball.cli", text), &options()).diagnostics;
     assert!(!found.is_empty(), "{text}");
     found.iter().flat_map(|found| &found.fixes).any(|fix| fix.safety == Safety::Safe)
+}
+
+/// While a `write` is typed or misspelt, what only it would show is not removed; nor is anything else while a line is wrong.
+#[test]
+fn no_rule_has_a_safe_fix_while_the_scene_has_an_error() {
+    for write in
+        ["write", "write ", "writ a.png", "write a.jp", "wirte a.png", "save a.png", "foo", "write \"a", "write a b"]
+    {
+        for object in ["sphere 0 0 -4 0.5", "sphere 0 0 -4 1", "cylinder 0.1 0 -4 -.1 .1"] {
+            let text = scene(&format!("{write}\n")).replace("sphere 0 0 -4  1\n", &format!("{object}\n"));
+            let text =
+                text.replace("write ball.png", "sphere 0 0 -4 1\nsphere 0 0 -4 5\nsphere 0 0 -4 5\nwrite ball.png");
+            let hidden = found(&text).into_iter().filter(|found| found.contains("L03")).collect::<Vec<_>>();
+            assert_eq!(hidden, [""; 0], "{text}");
+            assert!(!has_safe_fix(&text), "{text}");
+            assert_eq!(fix_all(&Source::new("ball.cli", text.as_str()), &options()).n_fixes, 0);
+        }
+    }
+    for error in ["sphere x\n", "fov 0\n", "light 1 1 1 1 1\n"] {
+        for idle in [
+            "light 0 0 0  9 9 9\n",
+            "sphere 0 0 -4 0.5\n",
+            "sphere 0 0 -4 1\n",
+            "fov 50\nfov 60\n",
+            "# clisc: allow(x)\n",
+        ] {
+            assert!(has_safe_fix(&scene(idle)), "{idle}");
+            assert!(!has_safe_fix(&scene(&(idle.to_owned() + error))), "{idle}{error}");
+        }
+    }
+    assert!(!has_safe_fix("light 1 1 1 0 0 5\nsphere x\nwrite ball.png\n"), "`fov 60` at the top");
+}
+
+/// A line that is whole in another order as well is not removed without a word.
+#[test]
+fn a_black_light_that_could_be_white_is_left_to_people() {
+    for (light, is_safe) in [
+        ("light 0 0 0  1 1 1", false),
+        ("light 0 0 0  0.5 0.2 0", false),
+        ("light 0 0 0  0 0 0", true),
+        ("light 0 0 0  5 5 5", true),
+        ("light 0 0 0  0 -1 0", true),
+    ] {
+        let text = scene(&format!("{light}\n"));
+        assert_eq!(found(&text), ["5: L0201"]);
+        assert_eq!(has_safe_fix(&text), is_safe, "{light}");
+    }
+    let suspected = "light 0 5 -2  1 1 1\nfov 60\nsurface 0.1 0 0  0.8 0.2 0.2  0 0 0  1  0\nwrite ball.png\n";
+    assert_eq!(found(suspected), ["1: W0308", "3: L0101"]);
+    assert!(!has_safe_fix(suspected));
 }
 
 #[test]

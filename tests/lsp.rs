@@ -492,6 +492,34 @@ fn all_safe_fixes_are_one_action() {
     }
 }
 
+/// While a `write` is being typed, what only it would show stays.
+#[test]
+fn no_safe_fix_removes_anything_while_a_line_is_wrong() {
+    let context = || json!({ "diagnostics": [], "only": ["source.fixAll"] });
+    for write in ["write ", "writ a.png", "write a.jp", "save a.png", "wr"] {
+        for object in ["sphere 0 0 -10 1", "sphere 0 0 -10 5", "light 0 0 0  9 9 9"] {
+            let mut editor = Editor::open(&format!(
+                "fov 60\nlight 1 1 1 0 5 0\nsurface 0.1 0.6 0.1 0.3 0.3 0.3 0 0 0 1 0\n{object}\n{write}\nsphere 0 0 -10 5\nwrite b.png\n"
+            ));
+            assert!(editor.codes().iter().any(|code| code.starts_with('E')), "{}", editor.text);
+            let actions =
+                editor.ask_about("codeAction", json!({ "range": range((0, 0), (0, 0)), "context": context() }));
+            assert_eq!(actions, json!([]), "{}", editor.text);
+            let all = json!({ "range": range((0, 0), (7, 0)), "context": { "diagnostics": [] } });
+            let actions = editor.ask_about("codeAction", all);
+            let removes = |action: &&Value| action["title"].as_str().is_some_and(|title| title.starts_with("remove"));
+            let preferred: Vec<_> = actions
+                .as_array()
+                .expect("a list")
+                .iter()
+                .filter(removes)
+                .filter(|action| action["isPreferred"] == true)
+                .collect();
+            assert!(preferred.is_empty(), "{preferred:?}");
+        }
+    }
+}
+
 /// Names and colours of the command table are those of 2018: in a scene of another edition they would be wrong.
 #[test]
 fn a_scene_of_another_edition_is_one_finding_without_a_fix() {

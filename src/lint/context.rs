@@ -18,7 +18,7 @@ pub(super) struct RuleContext<'a> {
     pub commands: Vec<Command<'a>>,
     /// What follows the last `write`.
     pub behind: Vec<Command<'a>>,
-    /// The program, without the commands that are wrong.
+    /// The program, without the commands that are wrong; `None` when more images may have been meant than it makes.
     pub program: Option<&'a Valid>,
     /// The scene as the last `write` sees it, or as it stands at the end if there is none.
     pub scene: Option<SceneView<'a>>,
@@ -34,6 +34,10 @@ impl<'a> RuleContext<'a> {
         let is_write = |command: &Command<'_>| kind_of(command) == Some(CommandKind::Write);
         let n_judged = commands.iter().rposition(is_write).map_or(commands.len(), |last| last + 1);
         let behind = commands.split_off(n_judged);
+        // What a `write` that cannot be read would show is not known, nor what stands on a line of which nothing is known.
+        let may_show_more =
+            |command: &Command<'_>| matches!(command.shape, Shape::Bad(None | Some(CommandKind::Write)));
+        let program = program.filter(|_| !commands.iter().any(may_show_more));
         let images = program.map_or_else(Vec::new, views);
         Self {
             source,
@@ -126,7 +130,7 @@ pub(super) fn name_of(object: Object) -> &'static str {
 }
 
 /// Returns the scenes that the images of a program show, of like ones the last; that of the end if there is no image.
-fn views(program: &Valid) -> Vec<SceneView<'_>> {
+pub(super) fn views(program: &Valid) -> Vec<SceneView<'_>> {
     let mut registers = Registers::default();
     let mut shown: Vec<Registers> = Vec::new();
     for command in &program.commands {

@@ -22,7 +22,7 @@ pub use options::{Level, Options, UnknownRule, find_rule};
 pub use registry::{RULES, Rule, all_codes, find, nearest};
 
 use crate::compile::{Compilation, compile_keeping};
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, Safety, codes};
 use crate::exec::refused_names;
 use crate::ir::{self, Program};
 use crate::lint::allow::Sieve;
@@ -39,6 +39,7 @@ pub fn check(source: &Source, options: &Options) -> Compilation {
 fn check_with(sieve: &mut Sieve<'_>) -> Compilation {
     let mut compilation = compile_keeping(sieve.source, &mut |found| sieve.keep(found));
     compilation.add(sieve.keep_all(refused_names(&compilation.program)));
+    leave_to_people(&mut compilation);
     compilation
 }
 
@@ -72,7 +73,19 @@ pub fn lint(source: &Source, options: &Options) -> Compilation {
     found = sieve.keep_all(found);
     found.extend(sieve.finish());
     compilation.add(found);
+    leave_to_people(&mut compilation);
     compilation
+}
+
+/// Makes the fixes of rules a matter for people where nobody knows what the scene will be: in one with an error, of which the
+/// repair may need what a rule finds needless, and in one that looks like one of another edition.
+fn leave_to_people(compilation: &mut Compilation) {
+    let is_error = |found: &Diagnostic| found.code.name.is_none();
+    let is_doubtful = |found: &Diagnostic| is_error(found) || found.code == &codes::PERHAPS_OTHER_EDITION;
+    if compilation.diagnostics.iter().any(is_doubtful) {
+        let of_rules = compilation.diagnostics.iter_mut().filter(|found| !is_error(found));
+        of_rules.flat_map(|found| &mut found.fixes).for_each(|fix| fix.safety = Safety::Unsafe);
+    }
 }
 
 /// Runs the rules over a scene, as far as it could be compiled.

@@ -1,8 +1,11 @@
 //! Rule `dark-light`.
 
+use crate::diag::words::proposed;
 use crate::diag::{Diagnostic, Edit, Fix, Safety};
 use crate::lint::context::RuleContext;
 use crate::lint::registry::declare_rule;
+use crate::syntax::argument_spans;
+use crate::syntax::editions::could_be_of_another;
 use crate::syntax::spec::CommandKind;
 
 declare_rule! {
@@ -35,7 +38,8 @@ declare_rule! {
     ///
     /// ## Fix safety
     ///
-    /// Safe: the light is removed, and no image depends on it.
+    /// Safe: the light is removed, and no image depends on it. Unsafe where its place could be a colour: `light 0 0 0  1 1 1` is
+    /// a white light at the origin for whoever writes the place first.
     ///
     /// ## Limits
     ///
@@ -49,11 +53,21 @@ fn check(cx: &RuleContext<'_>, acc: &mut Vec<Diagnostic>) {
     let is_dark = |numbers: &[f64]| numbers.iter().take(3).all(|channel| *channel == 0.0);
     for light in cx.all_of(CommandKind::Light).filter(|light| is_dark(light.numbers)) {
         let removed = vec![Edit::remove_command(cx.source, light.span)];
-        acc.push(
-            Diagnostic::new(&DARK_LIGHT.code, light.span, "a light of colour 0 0 0 adds nothing")
+        let diagnostic = Diagnostic::new(&DARK_LIGHT.code, light.span, "a light of colour 0 0 0 adds nothing");
+        acc.push(if could_be_of_another(CommandKind::Light, light.numbers) {
+            let texts: Vec<_> =
+                argument_spans(cx.source, light.span).into_iter().map(|span| cx.source.slice(span)).collect();
+            let swapped = format!("light {} {}", texts[3..].join(" "), texts[..3].join(" "));
+            diagnostic
+                .label("is black: the first three numbers are its colour")
+                .help(format!("remove it, or, if its place came first, {}", proposed(&swapped)))
+                .fix(Fix::guess("remove the light", removed))
+                .fix(Fix::write(Safety::Unsafe, light.span, swapped))
+        } else {
+            diagnostic
                 .label("is black")
                 .help("remove it, or give it a colour")
-                .fix(Fix::safe("remove the light", removed)),
-        );
+                .fix(Fix::safe("remove the light", removed))
+        });
     }
 }
