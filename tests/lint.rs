@@ -5,6 +5,7 @@ mod tree;
 
 use std::collections::BTreeSet;
 use std::fs;
+use std::io::Write;
 use std::path::Path;
 
 use clisc::diag::{Safety, codes};
@@ -230,6 +231,112 @@ fn a_scene_of_another_edition_is_not_linted() {
     assert!(!has_safe_fix(text));
     assert_eq!(clisc::lint::check(&Source::new("ball.cli", text), &options()).diagnostics.len(), 1);
     assert_eq!(clisc::format::format(&Source::new("ball.cli", text)), text.as_bytes(), "nor formatted");
+}
+
+/// The original scenes have repeated surfaces and nothing else; those of other years are turned into 2018's as far as their
+/// spheres go, which is enough to see what surfaces look like.
+#[test]
+fn the_original_scenes_are_not_too_bright() {
+    let folder = root().join("../shared/course");
+    if !folder.is_dir() {
+        let _ = writeln!(std::io::stderr(), "\nSKIPPED: the original scenes are not at {}", folder.display());
+        return;
+    }
+    let mut n_scenes = 0;
+    for path in
+        tree::files_below(&folder).into_iter().filter(|path| path.extension().is_some_and(|ending| ending == "cli"))
+    {
+        let text = fs::read_to_string(&path).expect("a scene");
+        let is_ours = path.parent().is_some_and(|folder| folder.ends_with("2018"));
+        let text = if is_ours { text } else { turned_into_2018(&text) };
+        let stem = path.file_stem().and_then(|stem| stem.to_str()).map(str::to_owned);
+        let found = lint(&Source::new("a.cli", text.as_str()), &Options::default().for_file(stem)).diagnostics;
+        let wrong: Vec<_> = found
+            .iter()
+            .filter(|found| {
+                matches!(found.code.id, "L0401" | "L0501" | "W0307" | "W0308" | "W0309") || found.is_error()
+            })
+            .collect();
+        assert!(wrong.is_empty(), "{}: {wrong:#?}\n{text}", path.display());
+        assert!(!is_ours || found.iter().all(|found| found.code.id == "L0102"), "{}", path.display());
+        n_scenes += 1;
+    }
+    assert_eq!(n_scenes, 62);
+}
+
+/// Puts numbers into the order of 2018, moves spheres before the eye, and leaves out what 2018 lacks.
+fn turned_into_2018(text: &str) -> String {
+    let eye_of = |line: &str| {
+        line.strip_prefix("eye ")
+            .map(|at| at.split_whitespace().map(|x| x.parse::<f64>().expect("a number")).collect::<Vec<_>>())
+    };
+    let eye = text.lines().find_map(eye_of).unwrap_or(vec![0.0; 3]);
+    let moved = |place: &[&str]| {
+        let place = place.iter().zip(&eye).map(|(x, eye)| (x.parse::<f64>().expect("a number") - eye).to_string());
+        place.collect::<Vec<_>>().join(" ")
+    };
+    let lines = text.lines().filter_map(|line| {
+        let words: Vec<_> = line.split('#').next().unwrap_or_default().split_whitespace().collect();
+        match words[..] {
+            ["light", _, _, _, r, g, b] => Some(format!("light {r} {g} {b} {}", moved(&words[1..4]))),
+            ["surface", a, b, c, d, e, f, ..] => {
+                Some(format!("surface {d} {e} {f} {a} {b} {c} {}", words[7..].join(" ")))
+            }
+            ["sphere", radius, ..] => Some(format!("sphere {} {radius}", moved(&words[2..]))),
+            ["fov" | "background" | "write", ..] => Some(line.to_owned()),
+            _ => None,
+        }
+    });
+    lines.map(|line| line + "\n").collect()
+}
+
+#[test]
+fn only_what_loses_its_shape_is_too_bright() {
+    let with = |surface: &str| {
+        scene("")
+            .replace("0.1 0 0  0.8 0.2 0.2  0 0 0  1  0", surface)
+            .replace("light 1 1 1  0 0 5", "light 1 1 1  0 0 5\nlight 1 1 1  3 4 5")
+    };
+    for (surface, is_found) in [
+        ("0.5 0.5 0.5  0.9 0.9 0.9  0 0 0  1  0", true),
+        ("0.4 0 0  0.9 0 0  0 0 0  1  0", true),
+        // Highlights, mirrors and a second light are as they should be.
+        ("0.2 0.2 0.2  0.6 0.6 0.6  0.7 0.7 0.7  20  0.7", false),
+        ("0.2 0.2 0.2  0.8 0.8 0.8  0.9 0.9 0.9  5  0.9", false),
+        ("0.1 0.1 0.1  0.9 0.9 0.9  0.5 0.5 0.5  50  0", false),
+        ("1 1 1  0 0 0  0 0 0  1  0", false),
+    ] {
+        let expected: &[&str] = if is_found { &["4: L0401"] } else { &[] };
+        assert_eq!(found(&with(surface)), expected, "{surface}");
+    }
+}
+
+#[test]
+fn numbered_names_are_like_numbered_files() {
+    let named = |file: &str, image: &str| {
+        let options = Options::default().for_file(Some(file.to_owned()));
+        found_with(&scene("").replace("ball.png", image), &options).is_empty()
+    };
+    for (file, image) in [
+        ("01_one_sphere", "p01.png"),
+        ("10_reflections", "p10.png"),
+        ("01", "p1.png"),
+        ("i1", "i1_partA.png"),
+        ("i1_mine", "i1_partA.png"),
+        ("scene3", "out/scene_03-big.png"),
+        ("p05", "5.png"),
+    ] {
+        assert!(named(file, image), "{image} in {file}.cli");
+    }
+    for (file, image) in [
+        ("01_one_sphere", "p02.png"),
+        ("i1", "i10.png"),
+        ("i10", "i1.png"),
+        ("cube1", "ball1.png"),
+        ("ball", "p01.png"),
+    ] {
+        assert!(!named(file, image) || image.starts_with(file), "{image} in {file}.cli");
+    }
 }
 
 #[test]

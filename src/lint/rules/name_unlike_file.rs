@@ -40,8 +40,9 @@ declare_rule! {
     ///
     /// ## Limits
     ///
-    /// Case, folders and what follows the name are no matter: `out/Ball-2.png` is fine in `ball.cli`. A scene that is not a file
-    /// has no name.
+    /// Case, folders and what follows the name are no matter: `out/Ball-2.png` is fine in `ball.cli`. Nor are the words of a name
+    /// that begins with a number: `p01.png` is fine in `01_one_sphere.cli`, and `i1_partA.png` in `i1_mine.cli`. A scene that is
+    /// not a file has no name.
     pub static NAME_UNLIKE_FILE = {
         id: "L0501", name: "name-unlike-file", title: "a `write` whose name is unlike that of its file", fix: Some(Safety::Unsafe),
     }
@@ -73,9 +74,28 @@ fn stem_of(name: &str) -> &str {
     file.strip_suffix(".png").unwrap_or(file)
 }
 
-/// Tells whether an image is called as its scene, or so with something behind that.
+/// Tells whether an image is called as its scene, or so with something behind that, or bears the scene's number: `p01` and
+/// `01_one_sphere`, `i1_partA` and `i1-mine`.
 fn is_like(image: &str, scene: &str) -> bool {
-    image.to_lowercase().starts_with(&scene.to_lowercase())
+    let [image, scene] = [image, scene].map(str::to_lowercase);
+    let is_numbered = || match (numbered(&image), numbered(&scene)) {
+        (Some((letters, number)), Some((other_letters, other))) => {
+            number == other && (letters == other_letters || letters.is_empty() || other_letters.is_empty())
+        }
+        _ => false,
+    };
+    image.starts_with(&scene) || is_numbered()
+}
+
+/// Returns the number with which a name begins, but for a letter or a few before it, and those letters.
+fn numbered(name: &str) -> Option<(&str, &str)> {
+    /// `scene` and `image` are words before a number, and so is `p`.
+    const MAX_LETTERS: usize = 6;
+    let start = name.find(|c: char| c.is_ascii_digit()).filter(|start| *start <= MAX_LETTERS)?;
+    let (letters, rest) = name.split_at(start);
+    let digits = &rest[..rest.find(|c: char| !c.is_ascii_digit()).unwrap_or(rest.len())];
+    let letters = letters.trim_end_matches(['_', '-', ' ']);
+    letters.chars().all(char::is_alphabetic).then_some((letters, digits.trim_start_matches('0')))
 }
 
 /// Returns the name of an image, in its folder, that is called as its scene.

@@ -3,27 +3,27 @@
 use glam::DVec3;
 
 use crate::diag::Diagnostic;
-use crate::ir::{SceneView, Surface};
-use crate::lint::context::RuleContext;
+use crate::ir::{self, Arena, Program, SceneView, Surface};
+use crate::lint::context::{RuleContext, views};
 use crate::lint::registry::declare_rule;
 use crate::lint::sight::{eye_ray, first_met};
 use crate::plan::{Object, Settings, Size, plan};
 use crate::trace::Tracer;
 
 declare_rule! {
-    /// Finds a surface that can return more light than falls on it, where an image shows it cut off at full brightness.
+    /// Finds a surface whose ambient and diffuse colour are together above 1, where an image shows much of it cut off at full
+    /// brightness.
     ///
     /// ## Why
     ///
-    /// Ambient, diffuse and specular coefficient and the reflectance of a channel are together above 1, and much of what is seen
-    /// of the surface is at its brightest: there its shape is lost.
+    /// Where such a surface faces a light it is all of one colour: there its shape is lost.
     ///
     /// ## Example
     ///
     /// ```cli
     /// fov 60
     /// light 1 1 1  0 0 5
-    /// surface 0.6 0 0  0.9 0.2 0.2  0.5 0.5 0.5  1  0
+    /// surface 0.6 0 0  0.9 0.2 0.2  0 0 0  1  0
     /// sphere 0 0 -4  1
     /// write ball.png
     /// ```
@@ -44,17 +44,17 @@ declare_rule! {
     ///
     /// ## Limits
     ///
-    /// The image looked at has 100×100 pixels, and scenes of more than a thousand objects are not. A highlight alone is no
-    /// such case: where the other terms are together at most 1, a surface is reported when more than a quarter of what is
-    /// seen of it is cut off. Values outside 0 to 1 are reported by themselves.
+    /// A surface is reported when more than a quarter of what is seen of it is cut off. Highlights and mirror images do not
+    /// count: they are often at full brightness, and meant so. Nor do several lights that are too bright together. The image
+    /// looked at has 100×100 pixels, and scenes of more than a thousand objects are not. Values outside 0 to 1 are reported by
+    /// themselves.
     pub static TOO_BRIGHT = {
         id: "L0401", name: "too-bright", title: "a surface that returns more light than it gets", fix: None,
     }
 }
 
-/// The share of what is seen of a surface that has to be cut off: more than a highlight, where only the highlight is too
-/// much, and more than a speck where all else is.
-const MIN_SHARES: [f64; 2] = [0.25, 0.05];
+/// The share of what is seen of a surface that has to be cut off.
+const MIN_SHARE: f64 = 0.25;
 
 /// Scenes of more objects are not looked at.
 const MAX_OBJECTS: usize = 1000;
@@ -63,55 +63,61 @@ const MAX_OBJECTS: usize = 1000;
 const SIDE: u32 = 100;
 
 fn check(cx: &RuleContext<'_>, acc: &mut Vec<Diagnostic>) {
-    let Some(scene) = cx.scene else { return };
+    let (Some(program), Some(scene)) = (cx.program, cx.scene) else { return };
     let surfaces = cx.used_surfaces();
     let is_usual = |numbers: DVec3| numbers.to_array().iter().all(|number| (0.0..=1.0).contains(number));
     let lights_are_usual = scene.lights().iter().all(|light| is_usual(light.color));
     let n_objects = scene.spheres().len() + scene.cylinders().len();
     let is_suspect = |surface: &Surface| {
-        let colors = [surface.ambient, surface.diffuse, surface.specular];
-        energy(surface).max_element() > 1.0 && colors.into_iter().all(is_usual) && surface.reflectance <= 1.0
+        brightness(surface).max_element() > 1.0 && [surface.ambient, surface.diffuse].into_iter().all(is_usual)
     };
     let suspects: Vec<_> = surfaces.into_iter().filter(|(_, surface)| is_suspect(surface)).collect();
     if suspects.is_empty() || !lights_are_usual || n_objects > MAX_OBJECTS {
         return;
     }
+    let Ok(matte) = ir::validate(matte(program)) else { return };
+    let Some(scene) = views(&matte).pop() else { return };
     let shares = saturated_shares(&scene);
-    let mut told: Vec<&Surface> = Vec::new();
-    for (place, surface) in suspects {
+    let mut told: Vec<Surface> = Vec::new();
+    for (place, surface) in suspects.into_iter().map(|(place, surface)| (place, dull(surface))) {
         if told.contains(&surface) {
             continue;
         }
-        told.push(surface);
-        let found = shares.iter().find(|(known, _)| *known == surface);
-        let share = found.map_or(0.0, |(_, share)| *share);
-        let min_share = MIN_SHARES[usize::from(energy_without_highlight(surface).max_element() > 1.0)];
-        if share > min_share {
-            let message = format!(
-                "this `surface` returns up to {:.2} times the light that it gets",
-                energy(surface).max_element()
-            );
+        let share = shares.iter().find(|(known, _)| **known == surface).map_or(0.0, |(_, share)| *share);
+        if share > MIN_SHARE {
+            let most = brightness(&surface).max_element();
+            let message = format!("this `surface` returns up to {most:.2} times the light that it gets");
             let percent = (share * 100.0).round();
             acc.push(
                 Diagnostic::new(&TOO_BRIGHT.code, place, message)
                     .label(format!("{percent} % of what is seen of it is cut off"))
-                    .help("lower its coefficients until ambient, diffuse, specular and `Krefl` are together at most 1"),
+                    .help("lower its ambient or diffuse colour until they are together at most 1"),
             );
         }
+        told.push(surface);
     }
 }
 
-/// Returns for each channel the most of the light of one white lamp that a surface returns.
-fn energy(surface: &Surface) -> DVec3 {
-    energy_without_highlight(surface) + surface.specular
+/// Returns for each channel the most of the light of one white lamp that a surface returns, but for its highlight.
+fn brightness(surface: &Surface) -> DVec3 {
+    surface.ambient + surface.diffuse
 }
 
-/// Returns that without the specular term, which few pixels get.
-fn energy_without_highlight(surface: &Surface) -> DVec3 {
-    surface.ambient + surface.diffuse + DVec3::splat(surface.reflectance)
+/// Returns a surface without its highlight and its mirror image.
+fn dull(surface: &Surface) -> Surface {
+    Surface { specular: DVec3::ZERO, reflectance: 0.0, ..*surface }
 }
 
-/// Returns for each surface that is seen the share of its pixels in which a channel with too much energy is full.
+/// Returns a program with all surfaces dull.
+fn matte(program: &Program) -> Program {
+    let mut matte = Program { surfaces: Arena::default(), ..program.clone() };
+    for surface in program.surfaces.as_slice() {
+        matte.surfaces.push(dull(surface));
+    }
+    matte
+}
+
+/// Returns for each surface that is seen the share of its pixels in which a channel with too much brightness is full.
 fn saturated_shares<'a>(scene: &SceneView<'a>) -> Vec<(&'a Surface, f64)> {
     let settings = Settings { size: Size::new(SIDE, SIDE).unwrap_or_default(), ..Settings::default() };
     let mut rgb = vec![0; (SIDE * SIDE * 3) as usize];
@@ -123,8 +129,8 @@ fn saturated_shares<'a>(scene: &SceneView<'a>) -> Vec<(&'a Surface, f64)> {
             continue;
         };
         let surface = surface_of(scene, object);
-        let energy = energy(surface);
-        let is_full = (0..3).any(|channel| pixel[channel] == u8::MAX && energy[channel] > 1.0);
+        let brightness = brightness(surface);
+        let is_full = (0..3).any(|channel| pixel[channel] == u8::MAX && brightness[channel] > 1.0);
         let place = counts.iter().position(|(known, _)| *known == surface);
         let place = place.unwrap_or_else(|| {
             counts.push((surface, [0.0; 2]));
