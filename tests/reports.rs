@@ -10,7 +10,7 @@ use std::fs;
 use std::path::Path;
 
 use clisc::diag::fix::apply;
-use clisc::diag::render::{Format, Notification, Report};
+use clisc::diag::render::{Color, Format, Notification, Report, Screen, render_human};
 use clisc::diag::{Diagnostic, Edit, Fix, codes};
 use clisc::source::{LineIndex, Source, Span};
 use clisc::{Compilation, compile};
@@ -132,6 +132,64 @@ fn sarif_holds_25000_results_and_says_how_many_more_there_were() {
     assert_eq!(invocation["executionSuccessful"], true);
     let told = invocation["toolExecutionNotifications"][0]["message"]["text"].as_str().expect("a text");
     assert!(told.starts_with("2007 findings left out: a run holds 25000 results"), "{told}");
+}
+
+/// Draws what is wrong with a scene on a screen of so many columns.
+fn drawn(text: &str, width: Option<usize>) -> String {
+    let source = Source::new("a.cli", text);
+    let mut found = compile(&source).diagnostics;
+    found.retain(Diagnostic::is_error);
+    let mut out = Vec::new();
+    render_human(&source, &found, Screen { color: Color::Never, width }, &mut out).expect("written to memory");
+    String::from_utf8(out).expect("text")
+}
+
+#[test]
+fn a_long_line_is_cut_around_its_places() {
+    let line = format!("sphere 0 0 -4{}x{} # a ball\n", " ".repeat(100), " ".repeat(100));
+    let expected = "\
+error[E0205]: `x` is not a number
+   ╭─[ a.cli:1:114 ]
+   │
+ 1 │ …                           x                           …
+   │                             ┬
+   │                             ╰── the `radius` of `sphere`
+   │
+   │ Help: write a number for `radius`, such as `1`, `-0.25` or `1e-3`
+───╯
+
+";
+    assert_eq!(drawn(&line, Some(62)), expected);
+    // Places far apart each have a piece.
+    let far = format!("sphere{}0 0 -5 1{}2 # ball\n", " ".repeat(200), " ".repeat(200));
+    let row = drawn(&far, Some(80)).lines().nth(3).expect("a row").trim_end().to_owned();
+    assert!(row.starts_with(" 1 │ sphere  ") && row.contains("  …  ") && row.ends_with(" 2 # ball"), "{row}");
+    assert!(drawn(&far, Some(80)).contains("╭─[ a.cli:1:415 ]"), "{}", drawn(&far, Some(80)));
+    // A line that fits is whole, also with tabs, and so is what a wide screen shows.
+    assert!(drawn("\tsphere\t0 0 -4 x  # a line of fifty columns\n", Some(62)).contains("fifty columns\n"));
+    assert!(drawn(&line, Some(400)).contains("# a ball"));
+    assert_eq!(drawn(&line, None), drawn(&line, Some(140)));
+}
+
+#[test]
+fn cut_lines_keep_their_marks_below_the_right_columns() {
+    for before in ["世界".repeat(300), "\t".repeat(300), "\u{1}é".repeat(300), " ".repeat(300)] {
+        let lines = format!("{before} sphere 0 0 -4 x\n").repeat(2).replacen("sphere", "sphere 1 y", 1);
+        let text = format!("\u{FEFF}{lines}");
+        let drawing = drawn(&text, Some(70));
+        for (row, below) in drawing.lines().zip(drawing.lines().skip(1)).filter(|(row, _)| row.starts_with(" 2 │")) {
+            let wide = |text: &str| text.chars().map(|c| if matches!(c, '世' | '界') { 2 } else { 1 }).sum::<usize>();
+            assert!(wide(row) <= 70, "{drawing}");
+            if let Some((before_mark, _)) = below.split_once('┬').filter(|_| row.contains(" x")) {
+                let at = row.split_once(" x").map(|(before, _)| wide(before) + 1);
+                assert_eq!(at, Some(before_mark.chars().count()), "{drawing}");
+            }
+        }
+    }
+    // Not even a word of a megabyte is printed.
+    let drawing = drawn(&format!("sphere 0 0 -4 1{}\n", "z".repeat(1_000_000)), Some(100));
+    assert!(drawing.lines().all(|row| row.chars().count() <= 160), "{drawing}");
+    assert!(drawing.contains("a.cli:1:15"), "{drawing}");
 }
 
 /// Carries out replacements as a reader of SARIF would, by lines and columns.

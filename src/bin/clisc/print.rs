@@ -8,9 +8,10 @@ use std::sync::OnceLock;
 use anyhow::Context;
 use clisc::Compilation;
 use clisc::diag::Severity;
-use clisc::diag::render::{Color, Format, Report, harmless};
+use clisc::diag::render::{Color, Format, Report, Screen, harmless};
 use clisc::diag::words::counted;
 use clisc::source::Source;
+use terminal_size::{Width, terminal_size_of};
 
 use crate::args::{ColorWhen, ReportFormat};
 
@@ -33,8 +34,7 @@ pub fn stderr() -> impl Write {
 /// When it cannot be written.
 pub fn report(format: ReportFormat) -> anyhow::Result<Report<impl Write>> {
     let format = match format {
-        ReportFormat::Human if stdout_has_color() => Format::Human(Color::Always),
-        ReportFormat::Human => Format::Human(Color::Never),
+        ReportFormat::Human => Format::Human(screen(&io::stdout())),
         ReportFormat::Short => Format::Short,
         ReportFormat::Json => Format::Json,
         ReportFormat::Sarif => Format::Sarif,
@@ -84,14 +84,25 @@ pub fn decide_color(when: ColorWhen) {
     let _ = COLOR.set(when);
 }
 
-/// Tells whether text on standard output is coloured.
-pub fn stdout_has_color() -> bool {
-    has_color(&io::stdout())
+/// Returns what a drawing on standard error is made for.
+pub fn stderr_screen() -> Screen {
+    screen(&io::stderr())
 }
 
-/// Tells whether text on standard error is coloured.
-pub fn stderr_has_color() -> bool {
-    has_color(&io::stderr())
+#[cfg(unix)]
+fn screen(stream: &(impl IsTerminal + std::os::fd::AsFd)) -> Screen {
+    let size = terminal_size_of(stream.as_fd());
+    Screen { color: color(stream), width: size.map(|(Width(width), _)| usize::from(width)) }
+}
+
+#[cfg(windows)]
+fn screen(stream: &(impl IsTerminal + std::os::windows::io::AsHandle)) -> Screen {
+    let size = terminal_size_of(stream.as_handle());
+    Screen { color: color(stream), width: size.map(|(Width(width), _)| usize::from(width)) }
+}
+
+fn color(stream: &impl IsTerminal) -> Color {
+    if has_color(stream) { Color::Always } else { Color::Never }
 }
 
 /// Tells whether a stream is coloured: as `--color` says, else if it is a terminal and the environment does not object.

@@ -1,27 +1,27 @@
 //! The drawing for people: the lines that a diagnostic speaks of, with its places marked.
 //!
 //! The drawing is ariadne's; this file is the only one that knows it. Three things are ours: the header, because the code
-//! belongs to the diagnostic; lines too long for a screen, of which a piece is shown; and the text itself, in which
-//! nothing that a terminal would obey is left.
+//! belongs to the diagnostic; lines too long for a screen, of which the pieces around the places are shown; and the text
+//! itself, in which nothing that a terminal would obey is left.
 
 use std::borrow::Cow;
+use std::collections::HashMap;
 use std::io::{self, Write};
 use std::ops::Range;
 
 use ariadne::{Config, IndexType, Label, Report, ReportKind};
 
+use crate::diag::render::canvas::{Canvas, Marks, is_long};
 use crate::diag::render::{self, short};
 use crate::diag::{Diagnostic, Severity};
-use crate::source::{Source, Span};
+use crate::source::Source;
 
-/// A line with more characters than this is not shown whole.
-const MAX_LINE_CHARS: usize = 300;
-/// How many characters of such a line are shown on either side of a place.
-const CONTEXT_CHARS: usize = 30;
+/// How wide a screen is taken to be of which nothing is known, in columns; rustc takes the same.
+const DEFAULT_WIDTH: usize = 140;
+/// The least columns that a line of the source gets.
+const MIN_WIDTH: usize = 40;
 /// The most diagnostics of one source that are drawn; the others get a line each.
 const MAX_DRAWN: usize = 500;
-/// The byte-order mark, in UTF-8. It is not drawn and takes no column.
-const BOM: &str = "\u{FEFF}";
 
 /// A place as ariadne takes it: the name of the source and a range of bytes.
 type Place<'a> = (&'a str, Range<usize>);
@@ -35,57 +35,95 @@ pub enum Color {
     Never,
 }
 
-/// Draws each diagnostic with the lines it speaks of.
+/// What a drawing is made for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Screen {
+    /// Whether it shows colours.
+    pub color: Color,
+    /// How many columns it has; `None` when that is not known.
+    pub width: Option<usize>,
+}
+
+impl From<Color> for Screen {
+    fn from(color: Color) -> Self {
+        Self { color, width: None }
+    }
+}
+
+/// Draws each diagnostic with the lines it speaks of; lines that are too long for the screen are cut around its places.
 ///
 /// # Errors
 /// Those of `out`.
-pub fn render_human(source: &Source, diagnostics: &[Diagnostic], color: Color, out: &mut dyn Write) -> io::Result<()> {
-    if diagnostics.is_empty() {
-        return Ok(());
-    }
-    let canvas = Canvas::new(source, color);
+pub fn render_human(
+    source: &Source,
+    diagnostics: &[Diagnostic],
+    screen: impl Into<Screen>,
+    out: &mut dyn Write,
+) -> io::Result<()> {
+    let screen = screen.into();
     let (drawn, others) = diagnostics.split_at(diagnostics.len().min(MAX_DRAWN));
-    for diagnostic in drawn {
-        canvas.write_header(diagnostic, out)?;
-        if canvas.fits(diagnostic) {
-            canvas.draw(diagnostic, out)?;
-        } else {
-            canvas.draw_piece(diagnostic, out)?;
-        }
+    let n_digits = source.lines().n_lines().to_string().len();
+    let width = screen.width.unwrap_or(DEFAULT_WIDTH).saturating_sub(n_digits + 4).max(MIN_WIDTH);
+    let Layers { of_diagnostics, marks } = Layers::new(source, drawn, width);
+    let easels: Vec<_> = marks.iter().map(|marks| Easel::new(source, marks, width, screen.color)).collect();
+    for (diagnostic, layer) in drawn.iter().zip(of_diagnostics) {
+        easels[layer].write_header(diagnostic, out)?;
+        easels[layer].draw(diagnostic, out)?;
         writeln!(out)?;
     }
     others.iter().try_for_each(|diagnostic| short::write_line(source, diagnostic, out))
 }
 
-/// A source made ready for drawing.
-struct Canvas<'s> {
+/// The canvases of a source. Diagnostics of one long line cut it in different ways, so that each has a canvas of its own,
+/// which those of other lines share; there are few mistakes on one line.
+#[derive(Default)]
+struct Layers {
+    /// For each diagnostic, its canvas.
+    of_diagnostics: Vec<usize>,
+    /// For each canvas, what is marked in its long lines.
+    marks: Vec<Marks>,
+}
+
+impl Layers {
+    fn new(source: &Source, diagnostics: &[Diagnostic], width: usize) -> Self {
+        let mut layers = Self::default();
+        let mut known_lengths = HashMap::new();
+        let mut n_layers_of: HashMap<usize, usize> = HashMap::new();
+        for diagnostic in diagnostics {
+            let mut marks = Marks::new();
+            for label in std::iter::once(&diagnostic.primary).chain(&diagnostic.secondary) {
+                let line = source.lines().line_of(label.span.start);
+                if *known_lengths.entry(line).or_insert_with(|| is_long(source, line, width)) {
+                    marks.entry(line).or_default().push(label.span);
+                }
+            }
+            let layer = marks.keys().filter_map(|line| n_layers_of.get(line)).copied().max().unwrap_or(0);
+            if layers.marks.len() <= layer {
+                layers.marks.push(Marks::new());
+            }
+            n_layers_of.extend(marks.keys().map(|line| (*line, layer + 1)));
+            layers.marks[layer].extend(marks);
+            layers.of_diagnostics.push(layer);
+        }
+        layers
+    }
+}
+
+/// A canvas and what it takes to draw on it.
+struct Easel<'s> {
     source: &'s Source,
     /// The name of the source.
     name: Cow<'s, str>,
     color: Color,
-    /// How much shorter the drawn text is than the source: the length of a byte-order mark.
-    n_cut: u32,
+    canvas: Canvas<'s>,
     drawn: ariadne::Source<String>,
 }
 
-impl<'s> Canvas<'s> {
-    fn new(source: &'s Source, color: Color) -> Self {
-        let text = source.text();
-        let visible = text.strip_prefix(BOM).unwrap_or(text);
-        let n_cut = (text.len() - visible.len()) as u32;
-        let name = render::harmless(source.name());
-        Self { source, name, color, n_cut, drawn: ariadne::Source::from(harmless(visible)) }
-    }
-
-    /// Tells whether all lines that the diagnostic speaks of can be shown.
-    fn fits(&self, diagnostic: &Diagnostic) -> bool {
-        let labels = std::iter::once(&diagnostic.primary).chain(&diagnostic.secondary);
-        labels.into_iter().all(|label| self.line_at(label.span.start).len() <= MAX_LINE_CHARS)
-    }
-
-    fn line_at(&self, offset: u32) -> Span {
-        let lines = self.source.lines();
-        lines.line_span(self.source.text(), lines.line_of(offset))
+impl<'s> Easel<'s> {
+    fn new(source: &'s Source, marks: &Marks, width: usize, color: Color) -> Self {
+        let mut canvas = Canvas::new(source, marks, width);
+        let drawn = ariadne::Source::from(canvas.take_text());
+        Self { source, name: render::harmless(source.name()), color, canvas, drawn }
     }
 
     fn write_header(&self, diagnostic: &Diagnostic, out: &mut dyn Write) -> io::Result<()> {
@@ -103,7 +141,10 @@ impl<'s> Canvas<'s> {
         let mut drawing = Vec::new();
         self.report(diagnostic).write((&*self.name, &self.drawn), &mut drawing)?;
         let drawing = String::from_utf8_lossy(&drawing);
-        drawing.lines().skip(1).try_for_each(|line| writeln!(out, "{}", line.trim_end()))
+        let mut rows = drawing.lines().skip(1).map(str::trim_end);
+        let first = rows.next().unwrap_or_default();
+        writeln!(out, "{}", self.with_place(first, diagnostic))?;
+        rows.try_for_each(|row| writeln!(out, "{row}"))
     }
 
     fn report<'a>(&'a self, diagnostic: &'a Diagnostic) -> Report<'a, Place<'a>> {
@@ -115,12 +156,12 @@ impl<'s> Canvas<'s> {
         let mut labels: Vec<_> = diagnostic.secondary.iter().map(|label| (label, ariadne::Color::Blue)).collect();
         labels.push((&diagnostic.primary, primary_color));
         labels.sort_by_key(|(label, _)| label.span);
-        let labels = labels
-            .into_iter()
-            .map(|(label, color)| Label::new(self.place(label.span)).with_message(&label.message).with_color(color));
+        let labels = labels.into_iter().map(|(label, color)| {
+            Label::new((&*self.name, self.canvas.place(label.span))).with_message(&label.message).with_color(color)
+        });
         let config = Config::new().with_color(has_color).with_index_type(IndexType::Byte);
-        let mut report =
-            Report::build(kind, self.place(diagnostic.primary.span)).with_config(config).with_labels(labels);
+        let place = (&*self.name, self.canvas.place(diagnostic.primary.span));
+        let mut report = Report::build(kind, place).with_config(config).with_labels(labels);
         if let Some(help) = &diagnostic.help {
             report.set_help(help);
         }
@@ -130,82 +171,11 @@ impl<'s> Canvas<'s> {
         report.finish()
     }
 
-    fn place(&self, span: Span) -> Place<'_> {
-        let shifted = |offset: u32| offset.saturating_sub(self.n_cut) as usize;
-        (&*self.name, shifted(span.start)..shifted(span.end))
+    /// Writes the place of a diagnostic in the source over that in the canvas.
+    fn with_place(&self, row: &str, diagnostic: &Diagnostic) -> String {
+        let place = self.source.lines().position(self.source.text(), diagnostic.primary.span.start);
+        let before = format!("{}:{}:", self.name, place.line);
+        let Some((head, rest)) = row.split_once(&before) else { return row.to_owned() };
+        format!("{head}{before}{}{}", place.column, rest.trim_start_matches(|c: char| c.is_ascii_digit()))
     }
-
-    /// Draws the primary place alone, with a piece of its line.
-    fn draw_piece(&self, diagnostic: &Diagnostic, out: &mut dyn Write) -> io::Result<()> {
-        let text = self.source.text();
-        let place = self.source.lines().position(text, diagnostic.primary.span.start);
-        let piece = Piece::new(text, self.line_at(diagnostic.primary.span.start), diagnostic.primary.span);
-        let number = place.line.to_string();
-        let margin = " ".repeat(number.len());
-        writeln!(out, " {margin} ╭─[ {}:{}:{} ]", self.name, place.line, place.column)?;
-        writeln!(out, " {margin} │")?;
-        writeln!(out, " {number} │ {}", piece.text)?;
-        writeln!(out, " {margin} │ {}{}", " ".repeat(piece.n_before), "─".repeat(piece.n_marked))?;
-        writeln!(out, " {margin} │ {}{}", " ".repeat(piece.n_before), diagnostic.primary.message)?;
-        for (word, text) in [("Help", &diagnostic.help), ("Note", &diagnostic.note)] {
-            if let Some(text) = text {
-                writeln!(out, " {margin} │\n {margin} │ {word}: {text}")?;
-            }
-        }
-        writeln!(out, "─{}─╯", "─".repeat(number.len()))
-    }
-}
-
-/// The piece of a long line around a place.
-struct Piece {
-    text: String,
-    /// Characters before the place.
-    n_before: usize,
-    /// Characters of the place itself.
-    n_marked: usize,
-}
-
-impl Piece {
-    fn new(text: &str, line: Span, place: Span) -> Self {
-        let before = &text[line.start as usize..place.start as usize];
-        let before: Vec<char> = before.chars().rev().take(CONTEXT_CHARS).collect();
-        let before: String = before.into_iter().rev().collect();
-        let end = place.end.min(line.end).max(place.start);
-        let marked: String = text[place.start as usize..end as usize].chars().take(2 * CONTEXT_CHARS).collect();
-        let shown_end = place.start as usize + marked.len();
-        let after: String =
-            text[shown_end..line.end.max(shown_end as u32) as usize].chars().take(CONTEXT_CHARS).collect();
-        let is_cut = |is_cut: bool| if is_cut { "…" } else { "" };
-        let cut_before = is_cut(line.start as usize + before.len() < place.start as usize);
-        let cut_after = is_cut(shown_end + after.len() < line.end as usize);
-        let n_before = before.chars().count() + cut_before.chars().count();
-        let n_marked = marked.chars().count().max(1);
-        let text = harmless(&format!("{cut_before}{before}{marked}{after}{cut_after}")).replace('\t', " ");
-        Self { text, n_before, n_marked }
-    }
-}
-
-/// Replaces what a terminal would obey and what ariadne, unlike us, takes for a line end; every byte keeps its place.
-fn harmless(text: &str) -> String {
-    let is_kept =
-        |character: char| matches!(character, '\n' | '\t') || !(character.is_control() || is_line_end(character));
-    if text.chars().all(is_kept) {
-        return text.to_owned();
-    }
-    let mut harmless = String::with_capacity(text.len());
-    let mut characters = text.chars().peekable();
-    while let Some(character) = characters.next() {
-        let is_crlf = character == '\r' && characters.peek() == Some(&'\n');
-        match character.len_utf8() {
-            _ if is_kept(character) || is_crlf => harmless.push(character),
-            1 => harmless.push('?'),
-            2 => harmless.push('¿'),
-            _ => harmless.push('\u{FFFD}'),
-        }
-    }
-    harmless
-}
-
-fn is_line_end(character: char) -> bool {
-    matches!(character, '\u{85}' | '\u{2028}' | '\u{2029}')
 }

@@ -5,6 +5,7 @@
 //! them. All show the message as it is; none decides what is worth showing. What no scene is to blame for is a
 //! [`Notification`]: a report in a form for programs holds it too, so that none looks whole that is not.
 
+mod canvas;
 mod github;
 mod gitlab;
 mod human;
@@ -17,7 +18,7 @@ mod short;
 
 pub use github::render_github;
 pub use gitlab::GitlabReport;
-pub use human::{Color, render_human};
+pub use human::{Color, Screen, render_human};
 pub use json::{JsonReport, render_json};
 pub use notification::Notification;
 pub use report::{Format, Report};

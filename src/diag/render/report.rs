@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use crate::diag::render::{
-    Color, GitlabReport, JsonReport, Notification, SarifReport, github, render_github, render_human, render_short,
+    GitlabReport, JsonReport, Notification, SarifReport, Screen, github, render_github, render_human, render_short,
 };
 use crate::diag::{Diagnostic, Severity};
 use crate::source::Source;
@@ -12,7 +12,7 @@ use crate::source::Source;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     /// The lines of the scene with the places marked.
-    Human(Color),
+    Human(Screen),
     /// One line each.
     Short,
     /// One JSON document of our own.
@@ -31,7 +31,7 @@ pub struct Report<W: Write>(Form<W>);
 
 #[derive(Debug)]
 enum Form<W: Write> {
-    Human(W, Color),
+    Human(W, Screen),
     Short(W),
     Json(JsonReport<W>),
     Sarif(SarifReport<W>),
@@ -46,7 +46,7 @@ impl<W: Write> Report<W> {
     /// Those of `out`.
     pub fn begin(format: Format, out: W) -> io::Result<Self> {
         Ok(Self(match format {
-            Format::Human(color) => Form::Human(out, color),
+            Format::Human(screen) => Form::Human(out, screen),
             Format::Short => Form::Short(out),
             Format::Json => Form::Json(JsonReport::begin(out)?),
             Format::Sarif => Form::Sarif(SarifReport::begin(out)?),
@@ -61,7 +61,7 @@ impl<W: Write> Report<W> {
     /// Those of the writer.
     pub fn add(&mut self, source: &Source, diagnostics: &[Diagnostic], n_unlisted: [usize; 2]) -> io::Result<()> {
         match &mut self.0 {
-            Form::Human(out, color) => render_human(source, diagnostics, *color, out)?,
+            Form::Human(out, screen) => render_human(source, diagnostics, *screen, out)?,
             Form::Short(out) => render_short(source, diagnostics, out)?,
             Form::Json(report) => {
                 report.count(Severity::Error, n_unlisted[0]);

@@ -11,7 +11,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use anyhow::{Context, bail};
-use clisc::diag::render::{Color, render_human};
+use clisc::diag::render::render_human;
 use clisc::exec::CancellationToken;
 use clisc::ir::{self, Command, Registers, SceneView, Valid};
 
@@ -63,10 +63,10 @@ pub fn run(args: &BenchArgs) -> anyhow::Result<ExitCode> {
 fn compile(path: &Path) -> anyhow::Result<Option<Valid>> {
     let source = input::read(path)?;
     let compilation = clisc::compile(&source);
-    let color = if print::stderr_has_color() { Color::Always } else { Color::Never };
     let mut stderr = print::stderr();
     // There is no place left to say that this failed.
-    let _ = render_human(&source, &compilation.diagnostics, color, &mut stderr).and_then(|()| stderr.flush());
+    let _ = render_human(&source, &compilation.diagnostics, print::stderr_screen(), &mut stderr)
+        .and_then(|()| stderr.flush());
     drop(stderr);
     print::unlisted_to_stderr(&source, &compilation);
     if compilation.has_errors() {

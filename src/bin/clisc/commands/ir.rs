@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use anyhow::Context;
 use clisc::Compilation;
-use clisc::diag::render::{Color, render_human};
+use clisc::diag::render::render_human;
 use clisc::ir::{self, Valid};
 use clisc::plan::{dump_plans, dump_plans_json};
 use clisc::source::Source;
@@ -21,10 +21,10 @@ pub fn run(args: &IrArgs) -> anyhow::Result<ExitCode> {
     let source = input::read(&args.scene)?;
     let compilation = clisc::compile(&source);
     let has_errors = compilation.has_errors();
-    let color = if print::stderr_has_color() { Color::Always } else { Color::Never };
     let mut stderr = print::stderr();
     // There is no place left to say that this failed.
-    let _ = render_human(&source, &compilation.diagnostics, color, &mut stderr).and_then(|()| stderr.flush());
+    let _ = render_human(&source, &compilation.diagnostics, print::stderr_screen(), &mut stderr)
+        .and_then(|()| stderr.flush());
     drop(stderr);
     print::unlisted_to_stderr(&source, &compilation);
     let mut out = print::stdout();

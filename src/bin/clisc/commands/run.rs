@@ -12,7 +12,7 @@ use std::time::Instant;
 
 use anyhow::{Context, bail};
 use clisc::diag::Diagnostic;
-use clisc::diag::render::{Color, render_human};
+use clisc::diag::render::render_human;
 use clisc::diag::words::counted;
 use clisc::exec::{CancellationToken, ExecError, Options, WriteReport, check_names, execute};
 use clisc::ir::{self, Command, Valid};
@@ -181,10 +181,9 @@ impl Session<'_> {
     }
 
     fn print_diagnostics(&self, source: &Source, diagnostics: &[Diagnostic]) -> anyhow::Result<()> {
-        let color = if print::stderr_has_color() { Color::Always } else { Color::Never };
         let shown: Vec<_> = diagnostics.iter().filter(|d| d.is_error() || !self.args.quiet).cloned().collect();
         let mut stderr = print::stderr();
-        render_human(source, &shown, color, &mut stderr)?;
+        render_human(source, &shown, print::stderr_screen(), &mut stderr)?;
         Ok(stderr.flush()?)
     }
 
