@@ -530,6 +530,7 @@ fn a_scene_of_another_edition_is_one_finding_without_a_fix() {
     let all = json!({ "range": range((0, 0), (5, 0)), "context": { "diagnostics": [] } });
     assert_eq!(editor.ask_about("codeAction", all), json!([]));
     assert_eq!(editor.ask_about("documentColor", json!({})), json!([]));
+    assert!(editor.ask_at("hover", 3, 8).is_null() && editor.ask_at("signatureHelp", 3, 8).is_null());
     assert_eq!(editor.ask_about("inlayHint", json!({ "range": range((0, 0), (5, 0)) })), json!([]));
     assert_eq!(editor.ask_about("formatting", json!({ "options": { "tabSize": 4, "insertSpaces": true } })), json!([]));
 }

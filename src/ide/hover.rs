@@ -19,7 +19,8 @@ pub struct Hover {
     pub markdown: String,
 }
 
-/// Says what stands at `offset`: a command, a number, a comment that speaks to clisc.
+/// Says what stands at `offset`: a command, a number, a comment that speaks to clisc. Of the commands of a scene of another
+/// edition nothing is said.
 #[must_use]
 pub fn hover(document: &Document, offset: u32) -> Option<Hover> {
     let line = LineAt::new(document, offset);
@@ -27,7 +28,7 @@ pub fn hover(document: &Document, offset: u32) -> Option<Hover> {
         return directive_hover(document, &line);
     }
     let word = line.word()?;
-    let command = line.command(document)?;
+    let command = line.command(document).filter(|_| !document.is_of_other_edition())?;
     if line.name() == Some(word) {
         return Some(Hover { span: word, markdown: command_page(document, command, offset) });
     }

@@ -19,14 +19,14 @@ pub struct Signature {
     pub active: Option<usize>,
 }
 
-/// Returns the command at `offset` and which of its arguments stands there or would.
+/// Returns the command at `offset` and which of its arguments stands there or would; none in a scene of another edition.
 #[must_use]
 pub fn signature(document: &Document, offset: u32) -> Option<Signature> {
     let line = LineAt::new(document, offset);
     if line.is_in_comment() {
         return None;
     }
-    let command = line.command(document)?;
+    let command = line.command(document).filter(|_| !document.is_of_other_edition())?;
     let index = line.arg_index()?;
     let mut label = command.name.to_owned();
     let mut args = Vec::new();

@@ -10,7 +10,7 @@ use crate::syntax::editions::verdict::{Evidence, Verdict};
 use crate::syntax::editions::{Edition, Editions, editions_with};
 
 /// The commands that are looked at: they tell, and a large scene is not read a second time for a slip at its end.
-const MAX_COMMANDS: usize = 10_000;
+const MAX_COMMANDS: usize = 2_000;
 
 /// The command that sets the camera.
 const EYE: &str = "eye";
