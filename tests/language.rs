@@ -535,6 +535,8 @@ fn one_mistake_is_not_reported_twice() {
         ("fov 60\nsurface 1 1 1 1 1 1 1 1 1 1 1\nsphere x 0 0 1 1 1\nwrite a.png", vec!["E0205", "E0204"]),
         ("fov 60\nsurface 1 1 1 1 1 1 1 1 1 1 1\nsphere x 0 0\nwrite a.png", vec!["E0205"]),
         // So are a mistake in shape and one in value, on two lines.
+        // A block of another language is one.
+        ("fov 60\nsurface 1 1 1 1 1 1 1 1 1 1 1\nsphere { <0, 1, 2>, 2 pigment { Red } }\nwrite a.png", vec!["E0205"]),
         ("fov 60\nlight 9 9 9 0 0\nlight 9 9 9 0 0 1\nwrite a.png", vec!["E0203", "W0303"]),
     ] {
         assert_eq!(check(bad), codes, "{bad}");

@@ -49,7 +49,8 @@ impl Fault {
 
 /// Appends what is wrong with the arguments of a command, one diagnostic for each mistake.
 pub(super) fn check_arguments(command: &BadCommand<'_>, acc: &mut Vec<Diagnostic>) {
-    if let Some(diagnostic) = numeral::find_commas(command).or_else(|| numeral::find_stray_words(command)) {
+    let of_all = [numeral::find_commas, numeral::find_stray_words, numeral::find_block];
+    if let Some(diagnostic) = of_all.into_iter().find_map(|find| find(command)) {
         return acc.push(diagnostic);
     }
     let n_before = acc.len();

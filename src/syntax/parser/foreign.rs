@@ -35,7 +35,7 @@ const fn row(
 static FOREIGN: [Foreign; 36] = [
     // Where the scene is seen from.
     row(
-        &["eye", "from", "position", "viewpoint", "eye_point"],
+        &["eye", "from", "position", "viewpoint", "eye_point", "location", "origin"],
         None,
         "sets the eye in other languages",
         "the eye is at the origin: subtract its place from all others instead",

@@ -1,6 +1,6 @@
 //! What is wrong with a text that should be a number.
 
-use crate::diag::words::{proposed, quoted};
+use crate::diag::words::{counted, proposed, quoted};
 use crate::diag::{Code, Diagnostic, Fix, Safety, codes};
 use crate::source::{Source, Span};
 use crate::syntax::lexer::lex_line;
@@ -150,6 +150,20 @@ pub(super) fn find_stray_words(command: &BadCommand<'_>) -> Option<Diagnostic> {
         Diagnostic::new(&codes::MALFORMED_NUMBER, first.span, message).label("not a number").help(proposed(&repair));
     let diagnostic = diagnostic.fix(command.rewritten(Safety::Unsafe, &repair));
     Some(words[1..].iter().fold(diagnostic, |diagnostic, word| diagnostic.secondary(word.span, "here too")))
+}
+
+/// Reports braces that cannot simply be left out, as in `sphere { <0, 0, -4>, 1 pigment { … } }`: the arguments of another
+/// language, which are one mistake.
+pub(super) fn find_block(command: &BadCommand<'_>) -> Option<Diagnostic> {
+    let Arguments::Numbers(args) = command.spec.arguments else { return None };
+    let brace = command.args.iter().find(|arg| command.text(arg).contains(['{', '}']))?;
+    let message = format!("braces among the numbers of `{}`", command.spec.name);
+    let help = format!("write `{}` with {}", command.spec.usage(), counted(args.len(), "number"));
+    Some(
+        Diagnostic::new(&codes::MALFORMED_NUMBER, brace.span, message)
+            .label("there are no blocks in this language")
+            .help(help),
+    )
 }
 
 /// Returns the numbers that `separators` separate in `texts`, if there is nothing else in them.
