@@ -13,8 +13,9 @@ use std::path::{Path, PathBuf};
 use clisc::exec::{CancellationToken, MemorySink, Options, execute};
 use clisc::image::{RgbImage, compare, compare_rows, decode_png, difference_image, encode_png};
 use clisc::ir::{self, Command};
-use clisc::plan::{Part, Precision, SampleAt, Settings, Size};
+use clisc::plan::{BackendChoice, Part, Precision, SampleAt, Settings, Size};
 use clisc::source::Source;
+use clisc::trace::kernels::Backend;
 use serde::{Deserialize, Serialize};
 
 /// The size of a new golden image.
@@ -100,6 +101,10 @@ impl RenderOptions {
         let (samples, max_level) = (self.samples.unwrap_or(usual.samples), self.max_level.unwrap_or(usual.max_level));
         Settings { size, part, samples, sample_at, max_level, ..Settings::default() }
     }
+}
+
+fn usual(precision: Precision) -> Settings {
+    Settings { precision, ..Settings::default() }
 }
 
 fn root() -> &'static Path {
@@ -198,13 +203,14 @@ fn new_reference(scene: &str, write: &str, is_only: bool) -> Reference {
     }
 }
 
-/// Renders the image of each entry; entries of one scene and the same options share a render.
-fn render_all(references: &[Reference], precision: Precision) -> Vec<RgbImage> {
+/// Renders the image of each entry; entries of one scene and the same options share a render. `usual` has what no entry says.
+fn render_all(references: &[Reference], usual: &Settings) -> Vec<RgbImage> {
     let mut renders = BTreeMap::new();
     let mut images = Vec::new();
     for Reference { scene, write, size, options, .. } in references {
         let images_of_scene = renders.entry((scene, size, options)).or_insert_with(|| {
-            render(&root().join("scenes").join(scene), &Settings { precision, ..options.settings(size) })
+            let (precision, backend) = (usual.precision, usual.backend);
+            render(&root().join("scenes").join(scene), &Settings { precision, backend, ..options.settings(size) })
         });
         let image = images_of_scene.get(write).unwrap_or_else(|| panic!("{scene} does not write `{write}`"));
         images.push(image.clone());
@@ -248,7 +254,7 @@ fn bless(mut manifest: Manifest) {
     let scenes = scenes();
     manifest.images.retain(|reference| scenes.contains(&reference.scene));
     manifest.images.extend(missing_references(&manifest));
-    let renders = render_all(&manifest.images, Precision::Exact);
+    let renders = render_all(&manifest.images, &usual(Precision::Exact));
     for (reference, actual) in manifest.images.iter_mut().zip(&renders) {
         PRODUCER.clone_into(&mut reference.producer);
         if check(reference, actual).is_err() {
@@ -277,7 +283,7 @@ fn every_scene_renders_to_its_golden_images() {
     let mut faults: Vec<_> =
         missing.iter().map(|r| format!("{}: `{}` has no golden image", r.scene, r.write)).collect();
     for precision in [Settings::default().precision, Precision::F64] {
-        for (reference, actual) in manifest.images.iter().zip(render_all(&manifest.images, precision)) {
+        for (reference, actual) in manifest.images.iter().zip(render_all(&manifest.images, &usual(precision))) {
             let fault = check(reference, &actual).err();
             if precision == Precision::F64 && BEYOND_F64.contains(&&*reference.image) {
                 faults.extend(fault.is_none().then(|| format!("{}: f64 is right now", reference.image)));
@@ -287,6 +293,29 @@ fn every_scene_renders_to_its_golden_images() {
         }
     }
     assert!(faults.is_empty(), "{}\nCLISC_BLESS=1 accepts what is rendered now", faults.join("\n"));
+}
+
+/// Every backend that this machine has gives the same bytes, proved or drafted.
+#[test]
+fn every_backend_gives_the_same_images() {
+    let choices = [BackendChoice::Scalar, BackendChoice::Avx2, BackendChoice::Avx512];
+    let available: Vec<_> = choices.into_iter().filter(|choice| Backend::chosen(*choice).is_available()).collect();
+    if available.len() < choices.len() {
+        let _ = writeln!(io::stderr(), "\nSKIPPED: this machine has only {available:?}");
+    }
+    let references = read_manifest().images;
+    for precision in [Precision::F64, Precision::F32] {
+        let images = available.iter().map(|backend| {
+            let usual = Settings { precision, backend: *backend, ..Settings::default() };
+            render_all(&references, &usual)
+        });
+        let images: Vec<_> = images.collect();
+        for (backend, by_backend) in available.iter().zip(&images) {
+            for ((reference, image), by_scalar) in references.iter().zip(by_backend).zip(&images[0]) {
+                assert_eq!(image.rgb(), by_scalar.rgb(), "{} by {backend:?} in {}", reference.image, precision.name());
+            }
+        }
+    }
 }
 
 #[test]

@@ -222,6 +222,50 @@ fn stats_as_a_table_name_every_time_and_count() {
     assert_says(&call.stdout, "\n  b.png is the image of write 0\n");
 }
 
+/// `--backend` chooses the instructions, else CLISC_BACKEND does; images are the same, and one that is missing is told of.
+#[test]
+fn a_backend_can_be_chosen() {
+    let mirrors = "fov 60\nbackground .1 .2 .3\nlight 1 1 1 0 2 5\nlight .3 .3 .3 -4 1 2\nsurface .1 .2 0 .4 .1 .1 .5 .5 .5 9 .4\n\
+                   sphere 0 0 -4 1\nsphere 1.5 .3 -5 1\nsphere -1.2 .1 -3 .4\ncylinder .3 .2 -2.5 -1 -.4\nwrite a.png\n";
+    let folder = Folder::with_scene(mirrors);
+    let version = folder.clisc(&["--version"]).stdout;
+    let backends = version.lines().find_map(|line| line.strip_prefix("backends: ")).expect("a line of backends");
+    let available: Vec<_> = backends.split(" (").next().expect("names").split(", ").collect();
+    assert_eq!(available.last(), Some(&"scalar"));
+    assert_says(&version, &format!("in use: {}", available[0]));
+
+    for precision in ["certified", "f32"] {
+        let mut images = Vec::new();
+        for backend in &available {
+            let args =
+                ["run", "a.cli", "--size", "100x80", "--precision", precision, "--backend", backend, "--stats=json"];
+            let call = folder.command(&args).env("CLISC_BACKEND", "scalar").output().expect("a call").into();
+            assert_code(&call, 0);
+            assert_says(&call.stdout, &format!("\"backend\": \"{backend}\""));
+            images.push(folder.bytes("a.png"));
+        }
+        assert!(images.iter().all(|image| *image == images[0]), "{precision}");
+    }
+
+    let with = |value: &str, args: &[&str]| -> support::Call {
+        folder.command(args).env("CLISC_BACKEND", value).output().expect("a call").into()
+    };
+    assert_says(&with("scalar", &["run", "a.cli", "--stats"]).stdout, "\n  backend                 scalar\n");
+    assert_says(&with("", &["run", "a.cli", "--stats"]).stdout, &format!("{:>14}\n", available[0]));
+    assert_says(&with("scalar", &["--version"]).stdout, "in use: scalar");
+    let wrong = with("sse", &["run", "a.cli"]);
+    assert_code(&wrong, 2);
+    assert_says(&wrong.stderr, "CLISC_BACKEND is `sse`, not auto, avx512, avx2 or scalar");
+    assert_code(&with("sse", &["run", "a.cli", "--backend", "auto"]), 0);
+    for missing in ["avx512", "avx2"].iter().filter(|name| !available.contains(name)) {
+        for call in [folder.clisc(&["run", "a.cli", "--backend", missing]), with(missing, &["bench", "a.cli"])] {
+            assert_code(&call, 2);
+            assert_says(&call.stderr, &format!("this machine has no {missing}"));
+            assert_says(&call.stderr, &format!("it has {}", available.join(", ")));
+        }
+    }
+}
+
 #[test]
 fn two_scenes_of_one_file_are_warned_of() {
     let folder = Folder::with_scene(&scene("x/same.png"));

@@ -39,7 +39,7 @@ pub use report::{Kept, LeftOut, Reason, Report};
 pub use savings::Savings;
 pub use scene::{CylinderLanes, Light, Primitive, Scene, SphereLanes, is_within_range};
 pub use search::Search;
-pub use settings::{ExactWork, Part, Precision, SampleAt, Settings, Size};
+pub use settings::{BackendChoice, ExactWork, Part, Precision, SampleAt, Settings, Size};
 pub use solid::Faces;
 pub use terms::{Exponent, Terms};
 pub use tiles::Tiles;

@@ -99,6 +99,20 @@ impl Precision {
     }
 }
 
+/// Which backend traces packets: what instructions of the machine are used. No pixel depends on it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum BackendChoice {
+    /// The fastest that the machine has.
+    #[default]
+    Auto,
+    /// AVX-512.
+    Avx512,
+    /// AVX2.
+    Avx2,
+    /// No special instructions.
+    Scalar,
+}
+
 /// How much work in arbitrary precision an image of [`Precision::Certified`] may take.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ExactWork {
@@ -127,6 +141,8 @@ pub struct Settings {
     pub precision: Precision,
     /// How much a certified image may take.
     pub exact_work: ExactWork,
+    /// What traces packets; a tracer can be made only if the machine has it.
+    pub backend: BackendChoice,
     /// What may be skipped; no pixel depends on it but those of a draft.
     pub passes: Passes,
 }
@@ -149,6 +165,7 @@ impl Default for Settings {
             max_level: 8,
             precision: Precision::default(),
             exact_work: ExactWork::default(),
+            backend: BackendChoice::default(),
             passes: Passes::all(),
         }
     }

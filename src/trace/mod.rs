@@ -79,11 +79,12 @@ impl<'p> Tracer<'p> {
     /// Prepares to render what a plan has left.
     ///
     /// # Panics
-    /// When the settings ask for samples not within 1…[`Settings::MAX_SAMPLES`] or a `max_level` above
-    /// [`Settings::MAX_LEVEL`].
+    /// When the settings ask for samples not within 1…[`Settings::MAX_SAMPLES`], a `max_level` above
+    /// [`Settings::MAX_LEVEL`], or a backend that this machine does not have.
     #[must_use]
     pub fn new(plan: Plan<'p>) -> Self {
-        Self::with_backend(plan, Some(Backend::best()))
+        let backend = Backend::chosen(plan.settings.backend);
+        Self::with_backend(plan, Some(backend))
     }
 
     /// Prepares to render by the packets of one backend, or none of them: no pixel depends on it.

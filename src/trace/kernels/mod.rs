@@ -28,6 +28,8 @@ use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
 use std::fmt::Debug;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
+use crate::plan::BackendChoice;
+
 /// One truth for each lane.
 pub trait Mask: Copy + Debug + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
     /// Makes a mask from its bits, that of lane 0 lowest; those above the last lane do not matter.
@@ -235,6 +237,17 @@ impl Backend {
     #[must_use]
     pub fn best() -> Self {
         Self::ALL.into_iter().rfind(|backend| backend.is_available()).unwrap_or(Self::Scalar)
+    }
+
+    /// Returns what a choice means on this machine. It may not be [available](Self::is_available) here.
+    #[must_use]
+    pub fn chosen(choice: BackendChoice) -> Self {
+        match choice {
+            BackendChoice::Auto => Self::best(),
+            BackendChoice::Avx512 => Self::Avx512,
+            BackendChoice::Avx2 => Self::Avx2,
+            BackendChoice::Scalar => Self::Scalar,
+        }
     }
 
     /// Returns the name by which a command line calls it.

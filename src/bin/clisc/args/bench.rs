@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, value_parser};
 use clisc::plan::{Settings, Size};
 
+use super::backend::BackendArgs;
 use super::image::{Precision, parse_size};
 use super::run::MAX_THREADS;
 
@@ -24,6 +25,9 @@ pub struct BenchArgs {
     /// Samples a pixel to measure, N by N each, separated by commas; against 32 by 32, which is 1024.
     #[arg(long, value_name = "N", value_delimiter = ',', num_args = 1.., value_parser = value_parser!(u32).range(1..=i64::from(Settings::MAX_SAMPLES)))]
     pub samples: Vec<u32>,
+    /// What traces them.
+    #[command(flatten)]
+    pub backend: BackendArgs,
     /// How often each is timed, in turns; what has taken ten seconds is not timed again.
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = value_parser!(u32).range(1..=1000))]
     pub repeat: u32,

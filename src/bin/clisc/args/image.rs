@@ -2,7 +2,7 @@
 
 use clap::builder::PossibleValue;
 use clap::{Args, ValueEnum, value_parser};
-use clisc::plan::{self, ExactWork, Pass, Passes, Settings, Size};
+use clisc::plan::{self, BackendChoice, ExactWork, Pass, Passes, Settings, Size};
 
 /// What an image is asked for.
 #[derive(Args, Debug)]
@@ -38,9 +38,10 @@ pub struct ImageArgs {
 }
 
 impl ImageArgs {
-    /// Returns what every render is asked for.
+    /// Returns what every render is asked for, by the backend of this machine.
     pub fn settings(&self) -> Settings {
         Settings {
+            backend: BackendChoice::Auto,
             size: self.size,
             part: self.part.into(),
             samples: self.samples,

@@ -1,5 +1,6 @@
 //! What the command line says: a file for each command, `image` for what several of them ask of an image.
 
+pub mod backend;
 mod bench;
 mod check;
 mod completions;

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum, value_parser};
 
+use super::backend::BackendArgs;
 use super::image::ImageArgs;
 
 /// Arguments of `clisc run`.
@@ -19,6 +20,9 @@ pub struct RunArgs {
     /// What the images are.
     #[command(flatten)]
     pub image: ImageArgs,
+    /// What traces them.
+    #[command(flatten)]
+    pub backend: BackendArgs,
     /// Threads to render with, at most 1024; 0 means one a core.
     #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true, value_parser = value_parser!(u16).range(..=MAX_THREADS))]
     pub threads: u16,
@@ -47,6 +51,7 @@ Examples:
   clisc run i1.cli --samples 4 --sample-at centre
   clisc run i1.cli --stats=json --quiet          times and counts for other programs
   clisc run i1.cli --no-skip=shadows,tiles       the same image without two of the shortcuts
+  clisc run i1.cli --backend scalar              the same image without special instructions of the machine
   clisc run i1.cli --certificate proof.json      and what stands behind its pixels
   clisc run - < i1.cli                           the scene from standard input
 

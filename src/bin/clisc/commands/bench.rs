@@ -14,6 +14,8 @@ use anyhow::{Context, bail};
 use clisc::diag::render::render_human;
 use clisc::exec::CancellationToken;
 use clisc::ir::{self, Command, Registers, SceneView, Valid};
+use clisc::plan::BackendChoice;
+use clisc::trace::kernels::Backend;
 
 use self::measure::Bench;
 use self::report::{Report, SceneReport};
@@ -30,18 +32,19 @@ pub fn run(args: &BenchArgs) -> anyhow::Result<ExitCode> {
         .use_current_thread()
         .build_global()
         .with_context(|| format!("cannot start {} threads", args.threads))?;
+    let backend = args.backend.choice()?;
     let interrupts = Interrupts::listen()?;
     if let Some(folder) = &args.svg {
         fs::create_dir_all(folder).with_context(|| format!("cannot make the folder `{}`", folder.display()))?;
     }
-    let mut report = Report::new(rayon::current_num_threads(), args.repeat);
+    let mut report = Report::new(rayon::current_num_threads(), Backend::chosen(backend).name(), args.repeat);
     let mut outcome = Outcome::Fine;
     for path in &args.scenes {
         let Some(program) = compile(path)? else {
             outcome = outcome.max(Outcome::SceneErrors);
             continue;
         };
-        let measured = interrupts.while_rendering(|| measure(args, path, &program, &interrupts.token()))?;
+        let measured = interrupts.while_rendering(|| measure(args, backend, path, &program, &interrupts.token()))?;
         let Some(scene) = measured else {
             outcome = Outcome::Interrupted;
             break;
@@ -81,6 +84,7 @@ fn compile(path: &Path) -> anyhow::Result<Option<Valid>> {
 /// Measures the last image of a scene; `None` when that was cancelled.
 fn measure(
     args: &BenchArgs,
+    backend: BackendChoice,
     path: &Path,
     program: &Valid,
     cancellation: &CancellationToken,
@@ -88,7 +92,8 @@ fn measure(
     let Some(view) = last_view(program) else {
         bail!("`{}` has no `write`: there is no image to measure", path.display());
     };
-    let bench = Bench { view, size: args.size, repeat: args.repeat, is_cancelled: &|| cancellation.is_cancelled() };
+    let is_cancelled = &|| cancellation.is_cancelled();
+    let bench = Bench { view, size: args.size, backend, repeat: args.repeat, is_cancelled };
     let modes = args.modes.clone().unwrap_or_else(measure::every_mode);
     Ok(bench.run(path, &modes, &args.samples))
 }

@@ -19,6 +19,7 @@ use clisc::ir::{self, Command, Valid};
 use clisc::lint::{Options as LintOptions, leave_out_allowed};
 use clisc::plan::{ExactWork, Settings};
 use clisc::source::Source;
+use clisc::trace::kernels::Backend;
 
 use self::certificate::Certificate;
 use self::reporter::Reporter;
@@ -31,7 +32,7 @@ use crate::{input, print, threads};
 
 /// Renders scenes and saves their images. A fault in one scene does not keep the others from being rendered.
 pub fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
-    let mut settings = args.image.settings();
+    let mut settings = Settings { backend: args.backend.choice()?, ..args.image.settings() };
     if args.certificate.is_some() {
         settings.exact_work = ExactWork::Unlimited;
     }
@@ -49,11 +50,11 @@ pub fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
         sink: DiskSink::new(&args.out_dir),
         writers: HashMap::new(),
     };
-    let mut report = StatsReport::new();
+    let mut report = StatsReport::new(Backend::chosen(session.settings.backend));
     for (scene_idx, path) in args.scenes.iter().enumerate() {
         let stats = session.run_scene(scene_idx, path)?;
         if args.stats == Some(StatsFormat::Table) {
-            print::to_stdout(&stats.table())?;
+            print::to_stdout(&stats.table(report.backend))?;
         }
         let interrupted = stats.outcome == Outcome::Interrupted;
         report.scenes.push(stats);

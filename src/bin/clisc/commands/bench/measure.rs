@@ -7,7 +7,7 @@ use clap::ValueEnum;
 use clisc::exact::Renderer;
 use clisc::exec::{exact_settings, render_whole};
 use clisc::ir::SceneView;
-use clisc::plan::{self, Settings, Size, plan};
+use clisc::plan::{self, BackendChoice, Settings, Size, plan};
 use clisc::trace::{Tracer, Unrounded};
 use rayon::prelude::*;
 
@@ -26,6 +26,7 @@ pub struct Bench<'a> {
     /// The scene as the last `write` sees it.
     pub view: SceneView<'a>,
     pub size: Size,
+    pub backend: BackendChoice,
     pub repeat: u32,
     pub is_cancelled: &'a (dyn Fn() -> bool + Sync),
 }
@@ -47,7 +48,7 @@ pub fn every_mode() -> Vec<Precision> {
 impl Bench<'_> {
     /// Measures modes, and numbers of samples; `None` when that was cancelled.
     pub fn run(&self, path: &Path, modes: &[Precision], samples: &[u32]) -> Option<SceneReport> {
-        let usual = Settings { size: self.size, ..Settings::default() };
+        let usual = Settings { size: self.size, backend: self.backend, ..Settings::default() };
         let of_modes: Vec<_> =
             modes.iter().map(|mode| Settings { precision: (*mode).into(), ..usual.clone() }).collect();
         // What samples cost and gain is not a matter of proofs.

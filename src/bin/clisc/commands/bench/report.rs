@@ -22,6 +22,7 @@ const TRUTH: &str = "exact";
 pub struct Report {
     version: u32,
     threads: usize,
+    backend: &'static str,
     repeat: u32,
     /// One for each scene without errors, in the order of the command line.
     pub scenes: Vec<SceneReport>,
@@ -98,8 +99,8 @@ fn mark_front(all: &mut [Measured]) {
 
 impl Report {
     /// Makes a report of a call that renders with `n_threads`.
-    pub fn new(n_threads: usize, repeat: u32) -> Self {
-        Self { version: VERSION, threads: n_threads, repeat, scenes: Vec::new() }
+    pub fn new(n_threads: usize, backend: &'static str, repeat: u32) -> Self {
+        Self { version: VERSION, threads: n_threads, backend, repeat, scenes: Vec::new() }
     }
 
     /// Returns the document.

@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use clisc::exec::{Origin, WriteReport};
 use clisc::plan::Savings;
+use clisc::trace::kernels::Backend;
 use clisc::trace::{Counts, Spared};
 use serde::{Serialize, Serializer};
 
@@ -21,6 +22,8 @@ pub struct StatsReport {
     version: u32,
     /// How many rendered.
     pub threads: usize,
+    /// The instructions of the machine that were used.
+    pub backend: &'static str,
     /// One for each scene, in the order of the command line.
     pub scenes: Vec<SceneStats>,
 }
@@ -94,8 +97,8 @@ fn seconds<S: Serializer>(time: &Duration, serializer: S) -> Result<S::Ok, S::Er
 
 impl StatsReport {
     /// Makes the report of a call that has not rendered yet.
-    pub fn new() -> Self {
-        Self { version: VERSION, threads: 0, scenes: Vec::new() }
+    pub fn new(backend: Backend) -> Self {
+        Self { version: VERSION, threads: 0, backend: backend.name(), scenes: Vec::new() }
     }
 
     /// Returns the worst outcome.
@@ -155,8 +158,9 @@ impl SceneStats {
     }
 
     /// Returns the table that `--stats` prints.
-    pub fn table(&self) -> String {
+    pub fn table(&self, backend: &str) -> String {
         let mut table = format!("{}\n", self.scene);
+        let _ = writeln!(table, "  {:<15} {backend:>14}", "backend");
         let times = [
             ("parse", self.parse),
             ("lower", self.lower),
