@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// A flag that ends an execution before its next pixel. Clones share it; once set it stays set.
+/// A flag that ends an execution before its next tile of pixels. Clones share it; once set it stays set.
 #[derive(Clone, Debug, Default)]
 pub struct CancellationToken(Arc<AtomicBool>);
 

@@ -29,4 +29,4 @@ Examples:
   clisc check two.cli                  every mistake with its place and its repair
   clisc check scenes --format short    one line each: path:line:column
   clisc check - --format json < a.cli  for other programs
-  clisc check scenes --deny-warnings   a gate: exit code 1 when there is anything to say";
+  clisc check scenes --deny-warnings   exit code 1 when there is anything to say";

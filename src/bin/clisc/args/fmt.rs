@@ -31,7 +31,7 @@ const FMT_EXAMPLES: &str = "\
 Examples:
   clisc fmt two.cli           bring a scene into its canonical form
   clisc fmt scenes            every scene below a folder
-  clisc fmt scenes --check    a gate: exit code 1 when there is a scene to format
+  clisc fmt scenes --check    exit code 1 when there is a scene to format
   clisc fmt scenes --check --format sarif
                               the same for other programs: also human, short, json, github, gitlab
   clisc fmt two.cli --diff    what would change
