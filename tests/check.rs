@@ -329,6 +329,47 @@ fn a_bad_scene_has_tokens_and_a_tree_but_no_program() {
     }
 }
 
+/// Once a run, for people only.
+#[test]
+fn the_last_words_name_the_command_that_says_more() {
+    let folder = Folder::with_scene(BAD);
+    let one = "For more information try `clisc explain E0401`.\n";
+    let call = folder.clisc(&["check", "a.cli", "a.cli"]);
+    assert!(call.stdout.ends_with(one) && call.stdout.matches("explain").count() == 1, "{}", call.stdout);
+    let call = folder.clisc(&["run", "a.cli"]);
+    assert!(call.stderr.ends_with(one), "{}", call.stderr);
+    assert!(folder.clisc(&["ir", "a.cli"]).stderr.ends_with(one));
+    folder.put("b.cli", "x\nfov 200\nsphere 0 0 -5 1\n");
+    let call = folder.clisc(&["check", "a.cli", "b.cli"]);
+    let several = "There is more to say of E0201, E0301, E0401, W0301.\n\
+                   For more information on a code try `clisc explain E0201`.\n";
+    assert!(call.stdout.ends_with(several), "{}", call.stdout);
+    for args in [
+        &["run", "a.cli", "--quiet"][..],
+        &["check", "a.cli", "--format", "short"],
+        &["check", "a.cli", "--format", "json"],
+        &["check", "a.cli", "--format", "github"],
+    ] {
+        let call = folder.clisc(args);
+        assert!(!(call.stdout + &call.stderr).contains("clisc explain"), "{args:?}");
+    }
+    folder.put("a.cli", scene("a.png"));
+    assert_eq!(folder.clisc(&["check", "a.cli"]).stdout, "");
+}
+
+#[test]
+fn codes_are_explained_in_any_case() {
+    let folder = Folder::new();
+    for name in ["E0203", "e0203", "No-FOV", "NO-FOV", "l0101", "Unused-Surface", "f0101"] {
+        assert_eq!(folder.clisc(&["explain", name]).code, Some(0), "{name}");
+    }
+    for (name, meant) in [("E203", "E0203"), ("e 0203", "E0203"), ("w302", "W0302 no-fov"), ("no_fov", "W0302 no-fov")]
+    {
+        let call = folder.clisc(&["explain", name]);
+        assert!(call.stderr.contains(&format!("did you mean {meant}?")), "{name}: {}", call.stderr);
+    }
+}
+
 #[test]
 fn codes_are_explained() {
     let folder = Folder::new();

@@ -77,7 +77,7 @@ pub fn nearest(text: &str) -> Option<&'static Code> {
     if text.len() > MAX_LEN {
         return None;
     }
-    let lower = text.to_ascii_lowercase();
+    let lower = text.to_ascii_lowercase().replace('_', "-");
     let near = all_codes().filter_map(|code| {
         let name = code.name.filter(|_| lower.contains('-')).unwrap_or(code.id);
         let distance = strsim::osa_distance(&lower, &name.to_ascii_lowercase());

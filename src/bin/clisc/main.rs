@@ -29,10 +29,15 @@ use crate::outcome::Outcome;
 fn main() -> ExitCode {
     let cli = Cli::parse();
     print::decide_color(cli.color);
-    run(&cli).unwrap_or_else(|error| {
+    let code = run(&cli).unwrap_or_else(|error| {
         print::to_stderr(&format!("error: {error:#}\n"));
         Outcome::Environment.into()
-    })
+    });
+    let is_quiet = matches!(&cli.command, Command::Run(args) if args.quiet);
+    if !is_quiet {
+        print::explained_to_stderr();
+    }
+    code
 }
 
 fn run(cli: &Cli) -> anyhow::Result<ExitCode> {

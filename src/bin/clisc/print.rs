@@ -3,13 +3,13 @@
 //! A reader that has seen enough (`clisc ir x.cli | head`) is no fault: a broken pipe is ignored.
 
 use std::io::{self, BufWriter, ErrorKind, IsTerminal, Write};
-use std::sync::OnceLock;
+use std::sync::{Mutex, OnceLock, PoisonError};
 
 use anyhow::Context;
 use clisc::Compilation;
-use clisc::diag::Severity;
-use clisc::diag::render::{Color, Format, Report, Screen, harmless};
+use clisc::diag::render::{Color, Explained, Format, Report, Screen, harmless, render_human};
 use clisc::diag::words::counted;
+use clisc::diag::{Diagnostic, Severity};
 use clisc::source::Source;
 use terminal_size::{Width, terminal_size_of};
 
@@ -84,9 +84,23 @@ pub fn decide_color(when: ColorWhen) {
     let _ = COLOR.set(when);
 }
 
-/// Returns what a drawing on standard error is made for.
-pub fn stderr_screen() -> Screen {
-    screen(&io::stderr())
+/// The codes that standard error has shown.
+static EXPLAINED: Mutex<Explained> = Mutex::new(Explained::new());
+
+/// Draws what was found in a scene on standard error.
+///
+/// # Errors
+/// When it cannot be written.
+pub fn diagnostics_to_stderr(scene: &Source, diagnostics: &[Diagnostic]) -> io::Result<()> {
+    EXPLAINED.lock().unwrap_or_else(PoisonError::into_inner).add(diagnostics);
+    let mut stderr = stderr();
+    render_human(scene, diagnostics, screen(&io::stderr()), &mut stderr)?;
+    stderr.flush()
+}
+
+/// Says, once a run, which command says more of what standard error has shown.
+pub fn explained_to_stderr() {
+    to_stderr(&std::mem::take(&mut *EXPLAINED.lock().unwrap_or_else(PoisonError::into_inner)).to_string());
 }
 
 #[cfg(unix)]

@@ -6,6 +6,7 @@
 //! [`Notification`]: a report in a form for programs holds it too, so that none looks whole that is not.
 
 mod canvas;
+mod explained;
 mod github;
 mod gitlab;
 mod human;
@@ -16,6 +17,7 @@ mod report;
 mod sarif;
 mod short;
 
+pub use explained::Explained;
 pub use github::render_github;
 pub use gitlab::GitlabReport;
 pub use human::{Color, Screen, render_human};

@@ -3,7 +3,8 @@
 use std::io::{self, Write};
 
 use crate::diag::render::{
-    GitlabReport, JsonReport, Notification, SarifReport, Screen, github, render_github, render_human, render_short,
+    Explained, GitlabReport, JsonReport, Notification, SarifReport, Screen, github, render_github, render_human,
+    render_short,
 };
 use crate::diag::{Diagnostic, Severity};
 use crate::source::Source;
@@ -31,7 +32,7 @@ pub struct Report<W: Write>(Form<W>);
 
 #[derive(Debug)]
 enum Form<W: Write> {
-    Human(W, Screen),
+    Human(W, Screen, Explained),
     Short(W),
     Json(JsonReport<W>),
     Sarif(SarifReport<W>),
@@ -46,7 +47,7 @@ impl<W: Write> Report<W> {
     /// Those of `out`.
     pub fn begin(format: Format, out: W) -> io::Result<Self> {
         Ok(Self(match format {
-            Format::Human(screen) => Form::Human(out, screen),
+            Format::Human(screen) => Form::Human(out, screen, Explained::new()),
             Format::Short => Form::Short(out),
             Format::Json => Form::Json(JsonReport::begin(out)?),
             Format::Sarif => Form::Sarif(SarifReport::begin(out)?),
@@ -61,7 +62,10 @@ impl<W: Write> Report<W> {
     /// Those of the writer.
     pub fn add(&mut self, source: &Source, diagnostics: &[Diagnostic], n_unlisted: [usize; 2]) -> io::Result<()> {
         match &mut self.0 {
-            Form::Human(out, screen) => render_human(source, diagnostics, *screen, out)?,
+            Form::Human(out, screen, explained) => {
+                explained.add(diagnostics);
+                render_human(source, diagnostics, *screen, out)?;
+            }
             Form::Short(out) => render_short(source, diagnostics, out)?,
             Form::Json(report) => {
                 report.count(Severity::Error, n_unlisted[0]);
@@ -99,7 +103,8 @@ impl<W: Write> Report<W> {
     /// Those of the writer.
     pub fn finish(self) -> io::Result<W> {
         match self.0 {
-            Form::Human(out, _) | Form::Short(out) | Form::Github(out) => Ok(out),
+            Form::Human(mut out, _, explained) => write!(out, "{explained}").map(|()| out),
+            Form::Short(out) | Form::Github(out) => Ok(out),
             Form::Json(report) => report.finish(),
             Form::Sarif(report) => report.finish(),
             Form::Gitlab(report) => report.finish(),

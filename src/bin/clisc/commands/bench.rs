@@ -6,12 +6,10 @@ mod plot;
 mod report;
 
 use std::fs;
-use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
 
 use anyhow::{Context, bail};
-use clisc::diag::render::render_human;
 use clisc::exec::CancellationToken;
 use clisc::ir::{self, Command, Registers, SceneView, Valid};
 use clisc::plan::BackendChoice;
@@ -66,11 +64,8 @@ pub fn run(args: &BenchArgs) -> anyhow::Result<ExitCode> {
 fn compile(path: &Path) -> anyhow::Result<Option<Valid>> {
     let source = input::read(path)?;
     let compilation = clisc::compile(&source);
-    let mut stderr = print::stderr();
     // There is no place left to say that this failed.
-    let _ = render_human(&source, &compilation.diagnostics, print::stderr_screen(), &mut stderr)
-        .and_then(|()| stderr.flush());
-    drop(stderr);
+    let _ = print::diagnostics_to_stderr(&source, &compilation.diagnostics);
     print::unlisted_to_stderr(&source, &compilation);
     if compilation.has_errors() {
         return Ok(None);

@@ -5,7 +5,6 @@ use std::process::ExitCode;
 
 use anyhow::Context;
 use clisc::Compilation;
-use clisc::diag::render::render_human;
 use clisc::ir::{self, Valid};
 use clisc::plan::{dump_plans, dump_plans_json};
 use clisc::source::Source;
@@ -21,11 +20,8 @@ pub fn run(args: &IrArgs) -> anyhow::Result<ExitCode> {
     let source = input::read(&args.scene)?;
     let compilation = clisc::compile(&source);
     let has_errors = compilation.has_errors();
-    let mut stderr = print::stderr();
     // There is no place left to say that this failed.
-    let _ = render_human(&source, &compilation.diagnostics, print::stderr_screen(), &mut stderr)
-        .and_then(|()| stderr.flush());
-    drop(stderr);
+    let _ = print::diagnostics_to_stderr(&source, &compilation.diagnostics);
     print::unlisted_to_stderr(&source, &compilation);
     let mut out = print::stdout();
     dump(args, &source, compilation, &mut out)?.and_then(|()| out.flush()).context(print::CANNOT_WRITE)?;

@@ -5,14 +5,12 @@ mod reporter;
 mod stats;
 
 use std::collections::HashMap;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::{Context, bail};
 use clisc::diag::Diagnostic;
-use clisc::diag::render::render_human;
 use clisc::diag::words::counted;
 use clisc::exec::{CancellationToken, ExecError, Options, WriteReport, check_names, execute};
 use clisc::ir::{self, Command, Valid};
@@ -183,9 +181,7 @@ impl Session<'_> {
 
     fn print_diagnostics(&self, source: &Source, diagnostics: &[Diagnostic]) -> anyhow::Result<()> {
         let shown: Vec<_> = diagnostics.iter().filter(|d| d.is_error() || !self.args.quiet).cloned().collect();
-        let mut stderr = print::stderr();
-        render_human(source, &shown, print::stderr_screen(), &mut stderr)?;
-        Ok(stderr.flush()?)
+        Ok(print::diagnostics_to_stderr(source, &shown)?)
     }
 
     /// Warns of images that would have taken more exact work than is done unasked.
