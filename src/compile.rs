@@ -140,7 +140,6 @@ pub(crate) fn with_edition(source: &Source, mut compiled: Compilation, keep: &mu
         return compiled;
     }
     let Some(verdict) = editions::judge(source) else { return compiled };
-    let Some(told) = keep(verdict.diagnostic()) else { return compiled };
     let found = std::mem::take(&mut compiled.diagnostics);
     let n_listed = found.len();
     if verdict.is_certain {
@@ -154,7 +153,7 @@ pub(crate) fn with_edition(source: &Source, mut compiled: Compilation, keep: &mu
         compiled.diagnostics.iter_mut().filter(|found| rests_on(found)).for_each(|found| found.fixes.clear());
         compiled.n_warnings -= n_listed - compiled.diagnostics.len();
     }
-    compiled.add(vec![told]);
+    compiled.add(keep(verdict.diagnostic()).into_iter().collect());
     compiled
 }
 

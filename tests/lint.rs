@@ -221,6 +221,11 @@ fn a_black_light_that_could_be_white_is_left_to_people() {
     let suspected = "light 0 5 -2  1 1 1\nfov 60\nsurface 0.1 0 0  0.8 0.2 0.2  0 0 0  1  0\nwrite ball.png\n";
     assert_eq!(found(suspected), ["1: W0308", "3: L0101"]);
     assert!(!has_safe_fix(suspected));
+    let allowed = format!("# clisc: allow(other-edition)\n{suspected}");
+    assert_eq!(found(&allowed), ["4: L0101"], "who allows it says that the light is as it should be");
+    let mut compilation = compile(&Source::new("ball.cli", allowed.as_str()));
+    clisc::lint::leave_out_allowed(&Source::new("ball.cli", allowed.as_str()), &options(), &mut compilation);
+    assert_eq!(compilation.diagnostics, [], "`run` says the same");
 }
 
 #[test]
