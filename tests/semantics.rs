@@ -262,6 +262,24 @@ fn the_worked_pixels_are_those_that_clisc_renders() {
     }
 }
 
+/// The page says what plain binary64 cannot: eight eye rays touch a sphere, and rounding makes them miss it.
+#[test]
+fn ties_are_what_the_tracer_gets_wrong() {
+    let folder = support::Folder::new();
+    folder.put("fov.cli", read("scenes/commands/fov.cli"));
+    let call = folder.clisc(&["run", "fov.cli"]);
+    assert_eq!(call.code, Some(0), "{}", call.stderr);
+    let image = folder.image("fov.png");
+    let (_, request) = worked();
+    let scene = Scene::read(&read("scenes/commands/fov.cli"), "fov.png");
+    let background = scene.background.to_array().map(|channel| (255.0 * channel) as u8);
+    let pixels = scene.image(&request);
+    let (expected, _) = image.rgb().as_chunks();
+    let different: Vec<_> = pixels.iter().zip(expected).filter(|(ours, theirs)| ours != theirs).collect();
+    assert_eq!(different.len(), 8);
+    assert!(different.iter().all(|(ours, _)| **ours == background), "{different:?}");
+}
+
 #[test]
 fn the_page_shows_the_scene_as_it_is() {
     let text = read("scenes/first-steps/first.cli");
