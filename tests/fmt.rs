@@ -148,7 +148,7 @@ fn what_cannot_be_read_is_2_and_the_others_are_formatted() {
 #[cfg(unix)]
 mod unix {
     use std::fs;
-    use std::os::unix::fs::{PermissionsExt, symlink};
+    use std::os::unix::fs::{MetadataExt, PermissionsExt, symlink};
 
     use super::*;
 
@@ -173,6 +173,22 @@ mod unix {
         assert_eq!(folder.bytes("a.cli"), TIDY.as_bytes());
         let rights = fs::metadata(folder.at("a.cli")).expect("a file").permissions().mode();
         assert_eq!(rights & 0o7777, 0o600);
+    }
+
+    #[test]
+    fn a_file_keeps_all_its_names() {
+        let folder = Folder::with_scene(LOOSE);
+        fs::hard_link(folder.at("a.cli"), folder.at("b.cli")).expect("a hard link");
+        let call = folder.clisc(&["fmt", "."]);
+        assert_eq!(call.code, Some(0), "{}", call.stderr);
+        assert_eq!((folder.bytes("a.cli"), folder.bytes("b.cli")), (TIDY.into(), TIDY.into()));
+        let id = |name: &str| fs::metadata(folder.at(name)).expect("a file").ino();
+        assert_eq!(id("a.cli"), id("b.cli"));
+        assert_eq!(folder.listing(), ["a.cli", "b.cli"]);
+        folder.put("a.cli", LOOSE);
+        fs::set_permissions(folder.at("a.cli"), fs::Permissions::from_mode(0o444)).expect("set rights");
+        assert_eq!(folder.clisc(&["fmt", "b.cli"]).code, Some(2), "read-only by any name");
+        assert_eq!(folder.bytes("b.cli"), LOOSE.as_bytes());
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Saving files, each as a whole or not at all: images below one folder, scenes in place of themselves.
 
+mod in_place;
 mod links;
 mod pending;
 mod replace;

@@ -4,11 +4,15 @@ use std::fs::{self, File};
 use std::io::{self, ErrorKind, Write};
 use std::path::Path;
 
+use super::in_place;
 use super::links::follow_links;
 use super::pending::PendingFile;
 
+/// What is wrong with a file that somebody else has written.
+pub(super) const HAS_CHANGED: &str = "has changed in the meantime";
+
 /// Replaces the content of a file, as a whole or not at all. Links on the way are followed and stay; so do the rights of
-/// the file and, where the system allows, its owner.
+/// the file and, where the system allows, its owner. A file with several names is written [in place](in_place).
 ///
 /// # Errors
 /// When the file may not be written, is no regular file, or no longer holds `old`.
@@ -23,8 +27,11 @@ pub fn replace(path: &Path, old: &[u8], new: &[u8]) -> io::Result<()> {
         return Err(ErrorKind::PermissionDenied.into());
     }
     drop(File::options().write(true).open(&target)?);
+    if in_place::has_several_names(&found) {
+        return in_place::overwrite(&target, old, new);
+    }
     if fs::read(&target)? != old {
-        return Err(io::Error::other("has changed in the meantime"));
+        return Err(io::Error::other(HAS_CHANGED));
     }
     let mut pending = PendingFile::create_in(target.parent().unwrap_or(&target))?;
     pending.write_all(new)?;
