@@ -137,6 +137,15 @@ fn mistakes_of_one_reading_are_mended() {
     assert_eq!(mended(&whole), scene("a.png"), "and what rules find is mended when no error is left");
 }
 
+/// In another edition the line means something else, however it is mended.
+#[test]
+fn a_scene_of_another_edition_is_left_alone() {
+    let text = "FOV 60\nlight 2 5 3  1,1,1\nsurface .5 0 0 .1 0 0 .5 .5 .5 10 0\nsphere 1 0 0 -5\neye 0 0 0\ncone 0 0 -5 1 1\nwrite a\n";
+    let folder = Folder::with_scene(text);
+    let call = folder.clisc(&["lint", "a.cli", "--fix", "--format", "short"]);
+    assert_eq!(folder.bytes("a.cli"), text.as_bytes(), "{}", call.stdout);
+}
+
 #[test]
 fn the_nearest_configuration_above_counts() {
     let folder = Folder::new();

@@ -62,11 +62,15 @@ fn fixes<'f>(text: &str, found: &'f [Diagnostic]) -> Vec<&'f Fix> {
     safe_fixes(found).filter(|(found, fix)| is_free(found, fix)).map(|(_, fix)| fix).collect()
 }
 
-/// Returns what can be mended safely, each with its fix: errors, or where there is none, what rules have found.
+/// Returns what can be mended safely, each with its fix: errors, or where there is none, what rules have found. In a scene
+/// of another edition that is nothing: its lines mean something else.
 pub fn safe_fixes(found: &[Diagnostic]) -> impl Iterator<Item = (&Diagnostic, &Fix)> {
     let is_error = |found: &Diagnostic| found.code.name.is_none();
     let has_error = found.iter().any(is_error);
-    let found = found.iter().filter(move |found| is_error(found) == has_error);
+    let is_about_edition =
+        |found: &Diagnostic| [&codes::OTHER_EDITION, &codes::PERHAPS_OTHER_EDITION].contains(&found.code);
+    let is_of_another = found.iter().any(is_about_edition);
+    let found = found.iter().filter(move |found| !is_of_another && is_error(found) == has_error);
     found.filter_map(|found| Some((found, found.fixes.first().filter(|fix| fix.safety == Safety::Safe)?)))
 }
 

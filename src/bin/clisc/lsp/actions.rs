@@ -5,6 +5,7 @@ use clisc::diag::{Diagnostic, Edit, Fix, Safety};
 use clisc::exec::refuse_name;
 use clisc::format::{Piece, changes, changes_in, format};
 use clisc::ide;
+use clisc::lint::safe_fixes;
 use clisc::source::{Source, Span};
 use clisc::syntax::{file_name, parse};
 use lsp_server::{ErrorCode, ResponseError};
@@ -124,9 +125,8 @@ fn allow(open: &Open, found: &Diagnostic) -> Option<CodeAction> {
 
 /// Offers all safe fixes that do not touch each other, if there are any.
 fn fix_all_action(open: &Open, kind: CodeActionKind) -> Option<CodeAction> {
-    let first_of = |found: &'_ Diagnostic| found.fixes.first().filter(|fix| fix.safety == Safety::Safe).cloned();
-    let fixes: Vec<Fix> = open.found().listed.iter().filter_map(first_of).collect();
-    let fixed = apply(open.document.text(), &fixes);
+    let fixes: Vec<&Fix> = safe_fixes(&open.found().listed).map(|(_, fix)| fix).collect();
+    let fixed = apply(open.document.text(), fixes.iter().copied());
     let applied = fixes.iter().zip(fixed.is_applied).filter(|(_, is_applied)| *is_applied);
     let edits: Vec<Edit> = applied.flat_map(|(fix, _)| fix.edits.clone()).collect();
     (!edits.is_empty()).then(|| CodeAction {
