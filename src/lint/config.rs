@@ -13,7 +13,7 @@
 use std::fmt;
 
 use serde::Deserialize;
-use serde::de::{Deserializer, Error as _, MapAccess, Visitor};
+use serde::de::{DeserializeSeed, Deserializer, Error as _, MapAccess, Visitor};
 
 use crate::diag::Code;
 use crate::lint::options::{Level, Options, find_rule};
@@ -100,13 +100,20 @@ impl<'de> Deserialize<'de> for ImageSize {
 #[derive(Default)]
 struct Rules(Vec<(&'static Code, Level)>);
 
-/// The name of a rule.
-struct RuleName(&'static Code);
+/// The name of a rule that has no level yet: a rule has a name and a code, and may stand here by one of them.
+struct NewRule<'r>(&'r [(&'static Code, Level)]);
 
-impl<'de> Deserialize<'de> for RuleName {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+impl<'de> DeserializeSeed<'de> for NewRule<'_> {
+    type Value = &'static Code;
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<&'static Code, D::Error> {
         let name = String::deserialize(deserializer)?;
-        find_rule(&name).map(Self).map_err(D::Error::custom)
+        let rule = find_rule(&name).map_err(D::Error::custom)?;
+        if self.0.iter().any(|(known, _)| *known == rule) {
+            let message = format!("`{name}` is {}, which has a level by its other name too", rule.label());
+            return Err(D::Error::custom(message));
+        }
+        Ok(rule)
     }
 }
 
@@ -122,8 +129,8 @@ impl<'de> Deserialize<'de> for Rules {
 
             fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Rules, A::Error> {
                 let mut rules = Vec::new();
-                while let Some((RuleName(rule), level)) = map.next_entry()? {
-                    rules.push((rule, level));
+                while let Some(rule) = map.next_key_seed(NewRule(&rules))? {
+                    rules.push((rule, map.next_value()?));
                 }
                 Ok(Rules(rules))
             }
@@ -161,6 +168,12 @@ mod tests {
             ("[lint.rules]\nno-fog = \"off\"\n", (2, 1), "there is no rule `no-fog`; did you mean `no-fov`?"),
             ("[lint.rules]\nE0203 = \"off\"\n", (2, 1), "E0203 is an error"),
             ("[lint.rules]\nno-fov = \"quiet\"\n", (2, 10), "unknown variant `quiet`"),
+            (
+                "[lint.rules]\nno-fov = \"off\"\nW0302 = \"error\"\n",
+                (2, 1),
+                "`no-fov` is W0302 no-fov, which has a level",
+            ),
+            ("[lint.rules]\nL0101 = \"off\"\nunused-surface = \"off\"\n", (3, 1), "is L0101 unused-surface"),
             ("[lint\n", (1, 6), ""),
         ] {
             let error = parse_config(text).expect_err(text);

@@ -16,7 +16,7 @@ pub struct LintArgs {
     /// out. A path that is named here is always read.
     #[arg(value_name = "PATH", required = true)]
     pub paths: Vec<PathBuf>,
-    /// Carry out the safe fixes and save the scenes; of standard input, print it.
+    /// Carry out the safe fixes, of errors first, and save the scenes; of standard input, print it.
     #[arg(long)]
     pub fix: bool,
     /// Save nothing; show what --fix would change, as patch -p1 reads it, and exit with 1 when that is anything.

@@ -44,9 +44,9 @@ pub fn overwrite(target: &Path, old: &[u8], new: &[u8]) -> io::Result<()> {
     let mut kept = tempfile::Builder::new().prefix(".clisc-").suffix(".old").tempfile_in(folder)?;
     kept.write_all(old)?;
     kept.as_file().sync_all()?;
-    write_over(target, new).or_else(|error| match write_over(target, old) {
-        Ok(()) => Err(error),
-        Err(_) => Err(told_where(kept, &error)),
+    write_over(target, new).map_err(|error| match write_over(target, old) {
+        Ok(()) => error,
+        Err(_) => told_where(kept, &error),
     })
 }
 
