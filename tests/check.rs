@@ -341,8 +341,8 @@ fn the_last_words_name_the_command_that_says_more() {
     assert!(folder.clisc(&["ir", "a.cli"]).stderr.ends_with(one));
     folder.put("b.cli", "x\nfov 200\nsphere 0 0 -5 1\n");
     let call = folder.clisc(&["check", "a.cli", "b.cli"]);
-    let several = "There is more to say of E0201, E0301, E0401, W0301.\n\
-                   For more information on a code try `clisc explain E0201`.\n";
+    let several = "These codes have explanations: E0201, E0301, E0401, W0301.\n\
+                   For more information on one try `clisc explain E0201`.\n";
     assert!(call.stdout.ends_with(several), "{}", call.stdout);
     for args in [
         &["run", "a.cli", "--quiet"][..],

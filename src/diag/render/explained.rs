@@ -32,12 +32,12 @@ impl fmt::Display for Explained {
         if self.0.len() == 1 {
             return writeln!(f, "For more information try `clisc explain {first}`.");
         }
-        write!(f, "There is more to say of {first}")?;
+        write!(f, "These codes have explanations: {first}")?;
         ids.take(MAX_NAMED - 1).try_for_each(|id| write!(f, ", {id}"))?;
         match self.0.len().saturating_sub(MAX_NAMED) {
             0 => writeln!(f, ".")?,
             n => writeln!(f, " and {n} more.")?,
         }
-        writeln!(f, "For more information on a code try `clisc explain {first}`.")
+        writeln!(f, "For more information on one try `clisc explain {first}`.")
     }
 }
