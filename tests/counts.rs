@@ -2,7 +2,7 @@
 
 mod support;
 
-use clisc::plan::{Pass, Passes, Settings, Size, plan};
+use clisc::plan::{Pass, Passes, Precision, Settings, Size, plan};
 use clisc::trace::kernels::Backend;
 use clisc::trace::{Counts, Spared, Tracer};
 
@@ -221,4 +221,42 @@ fn lights_on_full_channels_take_no_rays() {
     assert!(image == plain);
     assert!(10 * counts.shadow_rays < 8 * plain_counts.shadow_rays, "{counts:?} {plain_counts:?}");
     assert_eq!(counts.lightings, plain_counts.lightings);
+}
+
+/// What the pass `terms` takes out of surfaces is neither cast nor tested nor counted as work: a mirror that is white whatever it
+/// shows, a surface that no light reaches, and a light that adds nothing to the one that is left.
+#[test]
+fn terms_that_add_nothing_take_no_rays() {
+    let text = "fov 60\nlight 1 0 0 0 4 4\nlight 1 1 0 3 0 4\n\
+                surface 1 1 1 .5 .5 .5 .2 .2 .2 9 .5\nsphere -1.2 0 -5 1\n\
+                surface .1 .1 .1 0 0 .8 0 0 .5 9 0\nsphere 1.2 0 -5 1\n\
+                surface .1 .1 .1 0 .8 0 0 0 0 1 0\nsphere 0 1.5 -5 .9\nsphere 0 -1.5 -5 .9\nwrite a.png\n";
+    let program = compile(text);
+    let size = Size::new(WIDTH, HEIGHT).expect("a size within the limits");
+    for (precision, backend) in [
+        (Precision::F64, None),
+        (Precision::F64, Some(Backend::Scalar)),
+        (Precision::F64, Some(Backend::best())),
+        (Precision::F32, Some(Backend::best())),
+    ] {
+        let render = |passes: Passes| {
+            let mut rgb = vec![0; (WIDTH * HEIGHT * 3) as usize];
+            let settings = Settings { size, passes, precision, ..Settings::default() };
+            let plan = plan(last_view(&program), &settings);
+            let n_terms = plan.savings().terms_not_computed;
+            let counts = Tracer::with_backend(plan, backend).render_rows(0..HEIGHT, &mut rgb);
+            (rgb, counts, n_terms)
+        };
+        let only = Pass::ALL.into_iter().filter(|pass| *pass != Pass::Terms).fold(Passes::all(), Passes::without);
+        for (with, without) in [(Passes::all(), Passes::all().without(Pass::Terms)), (only, Passes::none())] {
+            let ((image, counts, n_terms), (plain, more, none)) = (render(with), render(without));
+            assert!(image == plain, "{precision:?} {backend:?}");
+            assert_eq!((n_terms, none), (5, 0), "all of the mirror's, and both of the blue surface");
+            assert_eq!(counts.reflected_rays, 0, "{counts:?}");
+            assert!(more.reflected_rays > 100, "{more:?}");
+            assert!(2 * counts.lightings < more.lightings, "{counts:?} {more:?}");
+            assert!(2 * counts.shadow_rays < more.shadow_rays, "{counts:?} {more:?}");
+            assert!(counts.tests < more.tests, "{counts:?} {more:?}");
+        }
+    }
 }

@@ -110,7 +110,7 @@ impl Analysis {
         }
         if passes.contains(Pass::Shadows) {
             let max_planes = (n_samples(settings) / PIXELS_PER_PLANE).clamp(N_PLANES[0], N_PLANES[1]);
-            let shadows = find_occluders(scene, &known.solids, &known.roles, part, max_planes);
+            let shadows = find_occluders(scene, &known.solids, &known.roles, settings, max_planes);
             known.lights = Some(shadows.lights);
             known.occluders = Some(shadows.occluders);
         }

@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 
 use crate::ir::{Command, Registers, SceneView, Valid};
 use crate::plan::report::{Kept, LeftOut, Reason};
-use crate::plan::{Changes, Exponent, Object, Pass, Plan, Settings, Terms, plan};
+use crate::plan::{Changes, Object, Pass, Plan, Settings, Terms, plan};
 use crate::source::Source;
 
 /// The version of the shape of the JSON dump.
@@ -298,10 +298,8 @@ impl Display for Needs<'_> {
         if *diffuse {
             write!(f, ", diffuse")?;
         }
-        match specular {
-            Some(Exponent::Whole(n)) => write!(f, ", specular of power {n}")?,
-            Some(Exponent::Real(p)) => write!(f, ", specular of power {p:?}")?,
-            None => {}
+        if let Some(power) = specular {
+            write!(f, ", specular of power {power}")?;
         }
         if *mirror { write!(f, ", reflection") } else { Ok(()) }
     }
@@ -320,11 +318,7 @@ fn to_json(planned: &Planned<'_>) -> Value {
             "lights": kept.lights.iter().map(between).collect::<Vec<_>>() })
     };
     let surface = |(idx, terms): &(u32, Terms)| {
-        let power = terms.specular.map(|exponent| match exponent {
-            Exponent::Whole(n) => f64::from(n),
-            Exponent::Real(p) => p,
-        });
-        json!({ "surface": idx, "diffuse": terms.diffuse, "specular_power": power, "mirror": terms.mirror,
+        json!({ "surface": idx, "diffuse": terms.diffuse, "specular_power": terms.specular, "mirror": terms.mirror,
             "constant": terms.constant.map(|color| color.to_array()), "only_gains": terms.only_gains })
     };
     let (same_as, changed_tiles) = match earlier {

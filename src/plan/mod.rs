@@ -41,17 +41,14 @@ pub use scene::{CylinderLanes, Light, Primitive, Scene, SphereLanes, is_within_r
 pub use search::Search;
 pub use settings::{BackendChoice, ExactWork, Part, Precision, SampleAt, Settings, Size};
 pub use solid::Faces;
-pub use terms::{Exponent, Terms};
+pub use terms::Terms;
 pub use tiles::Tiles;
 pub use tree::{Beam, Boxes, MeetBoxes, OneByOne, SearchRay};
 pub use writes::{Changes, TileMask};
 
-use crate::ir::{Handle, Registers, SceneView, Surface};
+use crate::ir::{Registers, SceneView, Surface};
 use crate::plan::analysis::{Analysis, analyse};
 use crate::plan::search::{AlongRays, AroundLights};
-
-/// Programs with more surfaces have the needs of each found out when it is asked for.
-const MAX_STORED_TERMS: usize = 4096;
 
 /// What one image needs.
 #[derive(Debug)]
@@ -68,8 +65,6 @@ pub struct Plan<'p> {
     pub report: Report,
     /// What the commands before the `write` have set.
     registers: Registers,
-    /// For each surface of the program what it needs; empty when they are too many to be kept.
-    terms: Vec<Terms>,
     /// What is known of the objects, unless they are too many.
     known: Option<Analysis>,
     /// How rays other than those from the eye find what they may meet.
@@ -88,6 +83,7 @@ pub struct Plan<'p> {
 #[must_use]
 pub fn plan<'p>(view: SceneView<'p>, settings: &Settings) -> Plan<'p> {
     let mut scene = Scene::new(view, settings.part);
+    scene.surfaces = terms::reduce(view.surfaces(), &scene.lights, settings);
     let mut report = Report::new(&view, &scene);
     let known = analyse(&mut scene, view.fov_deg(), settings, &mut report);
     let lists_are_short = known.as_ref().is_some_and(Analysis::lists_are_short);
@@ -95,10 +91,7 @@ pub fn plan<'p>(view: SceneView<'p>, settings: &Settings) -> Plan<'p> {
     if search == Search::Structures && known.is_none() {
         scene.sort_by_place();
     }
-    let n_stored = if scene.surfaces.len() <= MAX_STORED_TERMS { scene.surfaces.len() } else { 0 };
-    let terms: Vec<_> =
-        scene.surfaces[..n_stored].iter().map(|surface| Terms::new(surface, &scene.lights, settings)).collect();
-    report.add(&scene, known.as_ref(), &terms);
+    report.add(&view, &scene, known.as_ref(), settings);
 
     let everything = ObjectLists::everything(&scene);
     let mirrored = known.as_ref().map(|known| ObjectLists::of_all(&scene, |i| known.roles.mirrored[i]));
@@ -111,7 +104,6 @@ pub fn plan<'p>(view: SceneView<'p>, settings: &Settings) -> Plan<'p> {
         tiles: Tiles::new(&scene, view.fov_deg(), settings),
         report,
         registers: *view.registers(),
-        terms,
         known,
         mirrored,
         all_lights: (0..scene.lights.len() as u32).collect(),
@@ -121,12 +113,10 @@ pub fn plan<'p>(view: SceneView<'p>, settings: &Settings) -> Plan<'p> {
 }
 
 impl Plan<'_> {
-    /// Returns what a surface needs to be shaded.
+    /// Tells whether a light, by its index in [`Scene::lights`], may add to hits on a surface.
     #[must_use]
-    pub fn terms(&self, surface: Handle<Surface>) -> Terms {
-        let i = surface.index();
-        let find = || Terms::new(&self.scene.surfaces[i], &self.scene.lights, &self.settings);
-        self.terms.get(i).copied().unwrap_or_else(find)
+    pub fn adds(&self, surface: &Surface, light_idx: usize) -> bool {
+        terms::answers(surface, &self.scene.lights[light_idx], &self.settings)
     }
 
     /// Returns the lights that may add to a hit on an object, by their indices in [`Scene::lights`], in order.

@@ -1,9 +1,15 @@
 //! What the passes of one plan have found, for the dump and for statistics.
 
-use crate::ir::SceneView;
+use std::borrow::Cow;
+
+use crate::ir::{SceneView, Surface};
 use crate::plan::analysis::Analysis;
 use crate::plan::scene::shines;
-use crate::plan::{Object, Scene, Terms};
+use crate::plan::terms::{AllLights, drawn, n_terms};
+use crate::plan::{Object, Scene, Settings, Terms};
+
+/// Of programs with more surfaces it is not reported what each needs.
+const MAX_REPORTED: usize = 4096;
 
 /// Why no ray of an image needs an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,6 +64,8 @@ pub struct Report {
     /// For each surface that is used by what is kept, by its index in the program, what it needs; none when the program
     /// has very many.
     pub surfaces: Vec<(u32, Terms)>,
+    /// How many terms were taken out of the surfaces that are used by what is kept.
+    pub n_terms_left_out: u64,
     /// The most reflections an eye ray can have, as far as mirrors tell; `None` is unbounded.
     pub max_bounces: Option<u32>,
 }
@@ -75,12 +83,28 @@ impl Report {
     }
 
     /// Adds what is known at the end.
-    pub(super) fn add(&mut self, scene: &Scene<'_>, known: Option<&Analysis>, terms: &[Terms]) {
+    pub(super) fn add(
+        &mut self,
+        view: &SceneView<'_>,
+        scene: &Scene<'_>,
+        known: Option<&Analysis>,
+        settings: &Settings,
+    ) {
         self.kept = known.map(|known| known.describe(scene.lights.len()));
         self.max_bounces = known.and_then(Analysis::max_bounces);
         let mut is_used = vec![false; scene.surfaces.len()];
         scene.primitives().for_each(|primitive| is_used[primitive.surface.index()] = true);
-        let used = (0..).zip(terms).filter(|(i, _)| is_used[*i as usize]);
-        self.surfaces = used.map(|(i, terms)| (i, *terms)).collect();
+        let used = || (0..).zip(view.surfaces()).filter(|(i, _)| is_used[*i as usize]);
+        let declared = |surface: &Surface| drawn(surface, settings.part);
+        if scene.surfaces.len() <= MAX_REPORTED {
+            let lights = AllLights::new(&scene.lights);
+            let terms = |surface: &Surface| Terms::new(&declared(surface), &lights, settings);
+            self.surfaces = used().map(|(i, surface)| (i, terms(surface))).collect();
+        }
+        if matches!(scene.surfaces, Cow::Owned(_)) {
+            let left_out =
+                |i: u32, surface: &Surface| n_terms(&declared(surface)) - n_terms(&scene.surfaces[i as usize]);
+            self.n_terms_left_out = used().map(|(i, surface)| left_out(i, surface)).sum();
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! What a plan saves before any ray is cast, in numbers.
 
-use crate::plan::{Plan, Terms};
+use crate::plan::Plan;
 
 /// What the passes of one plan leave out, as far as it is known before any ray is cast.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
@@ -9,7 +9,7 @@ pub struct Savings {
     pub objects_left_out: u64,
     /// Lights that are black.
     pub lights_left_out: u64,
-    /// Diffuse, specular and reflected terms that surfaces in use do not need.
+    /// Diffuse, specular and reflected terms that were taken out of surfaces in use, because they add nothing.
     pub terms_not_computed: u64,
     /// Objects that need not be looked at on the way from an object to a light, over all objects and lights.
     pub occluders_left_out: u64,
@@ -41,7 +41,7 @@ impl Plan<'_> {
         let mut savings = Savings {
             objects_left_out: report.left_out.len() as u64,
             lights_left_out: (report.n_lights - report.lights.len()) as u64,
-            terms_not_computed: report.surfaces.iter().map(|(_, terms)| n_idle(terms)).sum(),
+            terms_not_computed: report.n_terms_left_out,
             occluders_left_out: self.n_occluders_left_out(),
             ..Savings::default()
         };
@@ -73,12 +73,4 @@ impl Plan<'_> {
             }
         }
     }
-}
-
-/// Returns how many of the three terms a surface does not need.
-fn n_idle(terms: &Terms) -> u64 {
-    if terms.constant.is_some() {
-        return 3;
-    }
-    [terms.diffuse, terms.specular.is_some(), terms.mirror].into_iter().filter(|is_needed| !is_needed).count() as u64
 }

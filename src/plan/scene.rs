@@ -68,8 +68,8 @@ pub struct Scene<'p> {
     pub background: DVec3,
     /// The lights whose colour is not black, in order.
     pub lights: Vec<Light>,
-    /// All surfaces.
-    pub surfaces: &'p [ir::Surface],
+    /// All surfaces, without the terms that they do not need.
+    pub surfaces: Cow<'p, [ir::Surface]>,
     /// The spheres.
     pub spheres: SphereLanes,
     /// What else is known of each sphere.
@@ -100,7 +100,7 @@ impl<'p> Scene<'p> {
             lights: shining(&view)
                 .map(|light| Light { color: light.color, position: light.position * scale })
                 .collect(),
-            surfaces: view.surfaces(),
+            surfaces: view.surfaces().into(),
             spheres: lay_out_spheres(view.spheres(), scale),
             sphere_primitives: (view.spheres().par_iter().with_min_len(SPHERES_PER_TASK))
                 .map(|s| Primitive { surface: s.surface, order: s.order })
@@ -181,7 +181,7 @@ impl<'p> Scene<'p> {
     }
 
     /// Returns the surface of a primitive.
-    pub fn surface(&self, primitive: Primitive) -> &'p ir::Surface {
+    pub fn surface(&self, primitive: Primitive) -> &ir::Surface {
         &self.surfaces[primitive.surface.index()]
     }
 }
@@ -291,7 +291,7 @@ impl Scene<'_> {
         Self {
             background: DVec3::ZERO,
             lights: Vec::new(),
-            surfaces: &[],
+            surfaces: Cow::default(),
             spheres,
             sphere_primitives: Vec::new(),
             sphere_equations: Cow::default(),

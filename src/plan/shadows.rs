@@ -30,7 +30,7 @@ use crate::plan::cone::Cone;
 use crate::plan::objects::Roles;
 use crate::plan::solid::Faces;
 use crate::plan::terms::answers;
-use crate::plan::{Part, Scene};
+use crate::plan::{Part, Scene, Settings};
 
 /// For so many objects between an object and a light a plane is looked for, however many objects there are.
 const MIN_PLANES: usize = 4;
@@ -58,9 +58,10 @@ pub(super) fn find_occluders(
     scene: &Scene<'_>,
     solids: &[Solid],
     roles: &Roles,
-    part: Part,
+    settings: &Settings,
     max_planes: u64,
 ) -> Shadows {
+    let part = settings.part;
     let n_lists = (solids.len() * scene.lights.len()).max(1) as u64;
     let max_planes = (max_planes / n_lists) as usize + MIN_PLANES;
     let n_spheres = scene.sphere_primitives.len();
@@ -75,7 +76,7 @@ pub(super) fn find_occluders(
     for (receiver, primitive) in scene.primitives().enumerate() {
         let mut lights = Vec::new();
         for (light_idx, light) in (0..).zip(&scene.lights) {
-            let is_lit = roles.is_met(receiver) && answers(scene.surface(*primitive), light, part);
+            let is_lit = roles.is_met(receiver) && answers(scene.surface(*primitive), light, settings);
             let facing = if is_lit { facing(solids, roles, receiver, light.position) } else { Facing::Nothing };
             let mut between = match &facing {
                 Facing::Nothing => Vec::new(),

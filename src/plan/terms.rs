@@ -1,21 +1,30 @@
 //! Pass `terms`: what of the formula for a hit's colour a surface needs at all.
 //!
+//! The pass takes the terms that add nothing out of the surfaces of the scene, so that nothing later sees them: packets, single
+//! rays and drafts shade what is left, and the passes behind this one find fewer mirrors and fewer lit objects.
+//!
 //! # Why it is safe
 //! The colour is Ca + Σ Cl·(Cd·(n·L) + Cs·(n·H)^P) + Krefl·(reflected colour), per channel, clamped to 0…1.
 //!
 //! - A term with a factor of 0 in every channel is 0: n·L and (n·H)^P are finite. So a surface needs no normal to a light
 //!   where Cd is 0, no half vector where Cs is, no light at all where both are, and not the light k where Clₖ·Cd and
 //!   Clₖ·Cs are 0 in every channel, as a red light on a blue surface.
-//! - (n·H)⁰ = 1 for every n·H, 0 among them; a whole P is a product of factors n·H.
 //! - A lit term is never below 0 where its coefficients are not: n·L > 0, and n·H > 0 because n·L > 0 and n·V ≥ 0 (the
 //!   normal is turned to the viewer). A reflected colour is at least 0, and Krefl is above 0 where it counts. So a channel
 //!   with Ca ≥ 1 that only gains is 1 after clamping, one with Ca ≤ 0 that only loses is 0; when every channel is settled
 //!   so, or nothing is added to it, the colour is a constant.
+//! - What is so under some lights is so under fewer of them: a constant is the same in every earlier image.
+
+use std::borrow::Cow;
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use crate::ir::Surface;
 use crate::plan::{Light, Part, Pass, Settings};
+
+/// Surfaces that a thread looks at at a time.
+const SURFACES_PER_TASK: usize = 4096;
 
 /// What a surface needs to be shaded.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,72 +32,116 @@ pub struct Terms {
     /// Whether it needs n·L.
     pub diffuse: bool,
     /// Whether it needs (n·H)^P, and which P that is.
-    pub specular: Option<Exponent>,
+    pub specular: Option<f64>,
     /// Whether its reflected ray is followed.
     pub mirror: bool,
-    /// The colour, clamped to 0…1, when it is the same at every hit; then nothing of the above is needed.
+    /// The colour, clamped to 0…1, when it is proved to be the same at every hit; then nothing of the above is needed.
     pub constant: Option<DVec3>,
     /// Whether no light and no reflection can make a channel smaller.
     pub only_gains: bool,
 }
 
-/// The exponent of a specular term.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Exponent {
-    /// A whole number of at most [`Exponent::MAX_WHOLE`]; 0 needs no half vector.
-    Whole(u32),
-    /// Any other.
-    Real(f64),
-}
-
-impl Exponent {
-    /// The largest exponent for which products are fewer than what a power takes.
-    pub const MAX_WHOLE: u32 = 1024;
-
-    /// Sorts an exponent.
-    fn new(shininess: f64) -> Self {
-        if shininess <= f64::from(Self::MAX_WHOLE) && shininess.fract() == 0.0 {
-            Self::Whole(shininess as u32)
-        } else {
-            Self::Real(shininess)
-        }
-    }
-}
-
 impl Terms {
-    /// Finds out what a surface needs under these lights.
-    pub(super) fn new(surface: &Surface, lights: &[Light], settings: &Settings) -> Self {
-        match (settings.part, settings.passes.contains(Pass::Terms)) {
-            (Part::A, false) => Self { diffuse: true, ..Self::NOTHING },
-            (Part::A, true) => {
-                let black = Surface { ambient: DVec3::ZERO, specular: DVec3::ZERO, reflectance: 0.0, ..*surface };
-                Self::needed(&black, lights)
-            }
-            (Part::B, false) => Self {
-                diffuse: true,
-                specular: Some(Exponent::Real(surface.shininess)),
-                mirror: surface.reflectance > 0.0,
-                ..Self::NOTHING
-            },
-            (Part::B, true) => Self::needed(surface, lights),
+    /// Finds out what a surface, as it is [drawn], needs under all lights; with the pass switched off, every term that is not
+    /// 0 by itself.
+    pub(super) fn new(surface: &Surface, lights: &AllLights, settings: &Settings) -> Self {
+        let is_on = settings.passes.contains(Pass::Terms);
+        let gains = lights.gains(surface);
+        let constant = constant(surface.ambient, gains).filter(|_| is_on);
+        let is_needed = |coefficient: DVec3| {
+            constant.is_none() && if is_on { lights.show(coefficient) } else { coefficient != DVec3::ZERO }
+        };
+        Self {
+            diffuse: is_needed(surface.diffuse),
+            specular: is_needed(surface.specular).then_some(surface.shininess),
+            mirror: constant.is_none() && surface.reflectance > 0.0,
+            constant,
+            only_gains: gains.iter().all(|change| change.is_none_or(|is_gain| is_gain == Gain::Up)),
         }
     }
 
-    /// Nothing but the ambient colour, of which nothing is known.
-    const NOTHING: Self = Self { diffuse: false, specular: None, mirror: false, constant: None, only_gains: false };
+    /// Returns a surface without the terms that it does not need.
+    fn reduce(&self, surface: &Surface) -> Surface {
+        Surface {
+            ambient: self.constant.unwrap_or(surface.ambient),
+            diffuse: if self.diffuse { surface.diffuse } else { DVec3::ZERO },
+            specular: if self.specular.is_some() { surface.specular } else { DVec3::ZERO },
+            reflectance: if self.mirror { surface.reflectance } else { 0.0 },
+            shininess: surface.shininess,
+        }
+    }
+}
 
-    fn needed(surface: &Surface, lights: &[Light]) -> Self {
-        let reaches = |coefficient: DVec3| lights.iter().any(|light| is_seen(coefficient, light.color));
-        let terms = Self {
-            diffuse: reaches(surface.diffuse),
-            specular: reaches(surface.specular).then(|| Exponent::new(surface.shininess)),
-            mirror: surface.reflectance > 0.0,
-            ..Self::NOTHING
+/// Takes out of surfaces what they do not need under these lights; nothing, when the pass is switched off.
+pub(super) fn reduce<'p>(surfaces: &'p [Surface], lights: &[Light], settings: &Settings) -> Cow<'p, [Surface]> {
+    if !settings.passes.contains(Pass::Terms) {
+        return surfaces.into();
+    }
+    let lights = AllLights::new(lights);
+    let reduced = |surface: &Surface| {
+        let surface = drawn(surface, settings.part);
+        Terms::new(&surface, &lights, settings).reduce(&surface)
+    };
+    let all = || surfaces.par_iter().with_min_len(SURFACES_PER_TASK);
+    if all().all(|surface| n_terms(&reduced(surface)) == n_terms(&drawn(surface, settings.part))) {
+        return surfaces.into();
+    }
+    all().map(reduced).collect::<Vec<_>>().into()
+}
+
+/// Returns a surface as the rules of `part` draw it.
+pub(super) fn drawn(surface: &Surface, part: Part) -> Surface {
+    match part {
+        Part::A => Surface { ambient: DVec3::ZERO, specular: DVec3::ZERO, reflectance: 0.0, ..*surface },
+        Part::B => *surface,
+    }
+}
+
+/// Returns how many of the terms for diffuse and specular light and for reflection a surface has.
+pub(super) fn n_terms(surface: &Surface) -> u64 {
+    let terms = [surface.diffuse != DVec3::ZERO, surface.specular != DVec3::ZERO, surface.reflectance > 0.0];
+    terms.into_iter().map(u64::from).sum()
+}
+
+/// What the lights of a scene can add in each channel.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct AllLights {
+    /// Whether some light is above 0 there.
+    has_bright: [bool; 3],
+    /// Whether some light is below 0 there.
+    has_dark: [bool; 3],
+}
+
+impl AllLights {
+    pub fn new(lights: &[Light]) -> Self {
+        let any = |is_so: fn(f64) -> bool| {
+            std::array::from_fn(|channel| lights.iter().any(|light| is_so(light.color[channel])))
         };
-        let gains = gains(surface, lights);
-        let only_gains = gains.iter().all(|change| change.is_none_or(|is_gain| is_gain == Gain::Up));
-        let constant = constant(surface.ambient, gains);
-        Self { constant, only_gains, ..terms }
+        Self { has_bright: any(|color| color > 0.0), has_dark: any(|color| color < 0.0) }
+    }
+
+    /// Tells whether some light adds to a term with this coefficient, in some channel.
+    fn show(&self, coefficient: DVec3) -> bool {
+        (0..3).any(|channel| coefficient[channel] != 0.0 && (self.has_bright[channel] || self.has_dark[channel]))
+    }
+
+    /// Returns for each channel which way lights and reflection can move it; `None` is not at all.
+    fn gains(&self, surface: &Surface) -> [Option<Gain>; 3] {
+        std::array::from_fn(|channel| {
+            let mut ways = [surface.reflectance > 0.0, false];
+            for coefficient in [surface.diffuse[channel], surface.specular[channel]] {
+                // The sign of the product, which may underflow.
+                let (bright, dark) = (self.has_bright[channel], self.has_dark[channel]);
+                ways[0] |= (coefficient > 0.0 && bright) || (coefficient < 0.0 && dark);
+                ways[1] |= (coefficient > 0.0 && dark) || (coefficient < 0.0 && bright);
+            }
+            match ways {
+                [false, false] => None,
+                [true, false] => Some(Gain::Up),
+                [false, true] => Some(Gain::Down),
+                [true, true] => Some(Gain::Either),
+            }
+        })
     }
 }
 
@@ -98,24 +151,6 @@ enum Gain {
     Up,
     Down,
     Either,
-}
-
-/// Returns for each channel which way lights and reflection can move it; `None` is not at all.
-fn gains(surface: &Surface, lights: &[Light]) -> [Option<Gain>; 3] {
-    std::array::from_fn(|channel| {
-        let products = lights.iter().flat_map(|light| {
-            [surface.diffuse[channel], surface.specular[channel]].map(|coefficient| {
-                let color = light.color[channel];
-                // The sign of the product, which may underflow.
-                if color == 0.0 || coefficient == 0.0 { 0.0 } else { color.signum() * coefficient.signum() }
-            })
-        });
-        let mirror = if surface.reflectance > 0.0 { 1.0 } else { 0.0 };
-        products.chain([mirror]).filter(|sign| *sign != 0.0).fold(None, |known, sign| {
-            let gain = if sign > 0.0 { Gain::Up } else { Gain::Down };
-            Some(if known.is_none_or(|known| known == gain) { gain } else { Gain::Either })
-        })
-    })
 }
 
 /// Returns the clamped colour if every channel of it is settled.
@@ -138,9 +173,11 @@ fn is_seen(coefficient: DVec3, color: DVec3) -> bool {
     (0..3).any(|channel| coefficient[channel] != 0.0 && color[channel] != 0.0)
 }
 
-/// Tells whether a light adds to a hit on a surface in some channel, by the rules of `part`.
-pub(super) fn answers(surface: &Surface, light: &Light, part: Part) -> bool {
-    is_seen(surface.diffuse, light.color) || (part == Part::B && is_seen(surface.specular, light.color))
+/// Tells whether a light may add to a hit on a surface in some channel; with the pass switched off, every light may to a
+/// surface that answers light.
+pub(super) fn answers(surface: &Surface, light: &Light, settings: &Settings) -> bool {
+    let color = if settings.passes.contains(Pass::Terms) { light.color } else { DVec3::ONE };
+    is_seen(surface.diffuse, color) || (settings.part == Part::B && is_seen(surface.specular, color))
 }
 
 #[cfg(test)]
@@ -152,20 +189,7 @@ mod tests {
         Surface { ambient: DVec3::ZERO, diffuse: DVec3::ZERO, specular: DVec3::ZERO, shininess: 1.0, reflectance: 0.0 };
 
     fn terms(surface: Surface, lights: &[Light]) -> Terms {
-        Terms::new(&surface, lights, &Settings::default())
-    }
-
-    #[test]
-    fn exponents_are_sorted() {
-        for (shininess, exponent) in [
-            (0.0, Exponent::Whole(0)),
-            (20.0, Exponent::Whole(20)),
-            (0.5, Exponent::Real(0.5)),
-            (1e300, Exponent::Real(1e300)),
-        ] {
-            let shiny = Surface { specular: DVec3::X, shininess, ..PLAIN };
-            assert_eq!(terms(shiny, &[WHITE]).specular, Some(exponent));
-        }
+        Terms::new(&surface, &AllLights::new(lights), &Settings::default())
     }
 
     #[test]
@@ -176,7 +200,10 @@ mod tests {
         assert_eq!((found.diffuse, found.specular), (false, None));
         assert_eq!(found.constant, Some(DVec3::new(0.5, 1.0, 0.0)));
         assert_eq!(terms(blue, &[red, WHITE]).constant, None);
-        assert!(answers(&blue, &WHITE, Part::A) && !answers(&blue, &red, Part::B));
+        let all = Settings::default();
+        let without = Settings { passes: all.passes.without(Pass::Terms), ..all.clone() };
+        let part_a = Settings { part: Part::A, ..all.clone() };
+        assert!(answers(&blue, &WHITE, &part_a) && !answers(&blue, &red, &all) && answers(&blue, &red, &without));
     }
 
     #[test]
@@ -190,5 +217,21 @@ mod tests {
         // Two signs that are one: a dark light on a negative coefficient adds.
         let inverse = Surface { diffuse: -DVec3::ONE, ..bright };
         assert_eq!(terms(inverse, &[dark]).constant, Some(DVec3::ONE));
+    }
+    #[test]
+    fn surfaces_lose_what_they_do_not_need() {
+        let (all, one) = (Settings::default(), [WHITE]);
+        let full = Surface { ambient: DVec3::ONE, diffuse: DVec3::X, reflectance: 0.5, ..PLAIN };
+        let plain = Surface { diffuse: DVec3::X, specular: DVec3::Y, reflectance: 0.5, ..PLAIN };
+        let surfaces = [full, plain];
+        let reduced = reduce(&surfaces, &one, &all);
+        assert_eq!(*reduced, [Surface { ambient: DVec3::ONE, ..PLAIN }, plain]);
+        assert!(matches!(reduce(&surfaces[1..], &one, &all), Cow::Borrowed(_)), "nothing to take out");
+        let without = Settings { passes: all.passes.without(Pass::Terms), ..all.clone() };
+        assert!(matches!(reduce(&surfaces, &one, &without), Cow::Borrowed(_)));
+        let red = [Light { color: DVec3::X, ..WHITE }];
+        assert_eq!(reduce(&surfaces, &red, &all)[1], Surface { specular: DVec3::ZERO, ..plain });
+        let part_a = Settings { part: Part::A, ..all };
+        assert_eq!(reduce(&surfaces, &one, &part_a)[0], Surface { diffuse: DVec3::X, ..PLAIN });
     }
 }

@@ -7,7 +7,8 @@
 //! untouched objects alone. What it meets is old, so it meets the same in S₁, where less is in its way. The same lights
 //! add there: new ones do not, and what blocks the others is old and stands in S₁ too. Its reflected ray again meets
 //! untouched objects alone. So its colour is the same, and a tile all of whose candidates are untouched is unchanged.
-//! What the plan of S₂ leaves out is needed by no ray of S₂, new or old, and touches nothing.
+//! What the plan of S₂ leaves out is needed by no ray of S₂, new or old, and touches nothing; a term that it takes out of a
+//! surface adds nothing under fewer lights either.
 //!
 //! Commands behind the last `write` are never looked at: [`crate::exec::execute`] plans a scene when it comes to a
 //! `write`, and nothing it does in between but to note their numbers.

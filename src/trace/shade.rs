@@ -33,7 +33,7 @@ pub struct HitPoint<'p, R> {
 
 impl<'p, R: Real> HitPoint<'p, R> {
     /// Works out where `ray` meets what it hits.
-    pub fn new(scene: &Scene<'p>, ray: &Ray<R>, hit: &Hit<R>) -> Self {
+    pub fn new(scene: &'p Scene<'_>, ray: &Ray<R>, hit: &Hit<R>) -> Self {
         let mut point = ray.origin + ray.dir.scale(hit.t);
         let zero = R::exact(0.0);
         let (outward, primitive) = match hit.face {
@@ -94,7 +94,8 @@ impl<R: Real> Integrator<'_, '_, R> {
         if plan.settings.part == Part::B {
             self.judge.counts.lightings += plan.scene.lights.len() as u64;
         }
-        for light_idx in plan.lights(at.object).iter().map(|&light| light as usize) {
+        let lights = plan.lights(at.object).iter().map(|&light| light as usize);
+        for light_idx in lights.filter(|&light_idx| plan.adds(at.surface, light_idx)) {
             let light = &plan.scene.lights[light_idx];
             let to_light = Vector::exact(light.position) - at.point;
             if self.judge.is_positive(at.normal.dot(to_light))? && !self.is_shadowed(at, light_idx, to_light)? {

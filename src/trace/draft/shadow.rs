@@ -64,6 +64,7 @@ impl FaceLights {
         let surface = &scene.surfaces[face.surface];
         let is_b = plan.settings.part == Part::B;
         let lights = (plan.lights(face.object).iter())
+            .filter(|&&light_idx| plan.adds(surface, light_idx as usize))
             .filter_map(|&light_idx| {
                 let light = &scene.lights[light_idx as usize];
                 let (spheres, cylinders) =

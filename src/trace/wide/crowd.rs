@@ -59,7 +59,9 @@ impl Around {
     pub fn look_up<L: Lanes>(&mut self, all: &Bounds, plan: &Plan<'_>, face: &Face, at: &Points<L>) -> bool {
         self.looks.clear();
         // All lights are looked at first, so that memory is waited for once.
-        for light_idx in (0..all.lights.len()).filter(|_| plan.settings.part == Part::B) {
+        let surface = &plan.scene.surfaces[face.surface];
+        let needs_look = |light_idx: &usize| plan.settings.part == Part::B && plan.adds(surface, *light_idx);
+        for light_idx in (0..all.lights.len()).filter(needs_look) {
             let light = all.lights[light_idx].position;
             let w =
                 [at.point[0] - L::splat(light[0]), at.point[1] - L::splat(light[1]), at.point[2] - L::splat(light[2])];
@@ -140,7 +142,8 @@ impl Around {
         let is_left =
             |i: &u32| light.spheres[*i as usize].equation == f64::from(face.equation) && face.per_radius > 0.0;
         let others = || found.spheres.iter().copied().filter(|i| !is_left(i));
-        let is_hidden = others().any(|i| light.spheres[i as usize].side == Side::Closed);
+        let is_idle = !plan.adds(&scene.surfaces[face.surface], light_idx);
+        let is_hidden = is_idle || others().any(|i| light.spheres[i as usize].side == Side::Closed);
         let spheres = others().filter(|&i| light.spheres[i as usize].side != Side::Open);
         let cylinders = found.cylinders.iter().copied().filter(|&i| {
             !is_left_wall(scene, face, i) && !is_behind_cap(&light.cylinders[i as usize], light.position[1], face)
@@ -157,7 +160,8 @@ impl Around {
         spheres.clear();
         let others = found.spheres.iter().filter(|i| !is_left(i));
         spheres.extend(others.map(|&i| sphere_from(scene, position, i as usize)));
-        let is_hidden = spheres.iter().any(|sphere| sphere.side == Side::Closed);
+        let is_idle = !plan.adds(&scene.surfaces[face.surface], light_idx);
+        let is_hidden = is_idle || spheres.iter().any(|sphere| sphere.side == Side::Closed);
         spheres.retain(|sphere| sphere.side != Side::Open);
         cylinders.clear();
         let others = found.cylinders.iter().filter(|i| !is_left_wall(scene, face, **i));

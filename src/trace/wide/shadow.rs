@@ -20,7 +20,7 @@ const MIN_WALL_DISCRIMINANT: f64 = 1.0 / 262_144.0;
 pub(super) struct LightOccluders {
     /// For each light the spheres and the cylinders.
     lists: Vec<[Vec<u32>; 2]>,
-    /// For each light whether it is hidden from all of the face.
+    /// For each light whether it adds nothing to the face, or is hidden from all of it.
     hidden: Vec<bool>,
     /// Whether spheres may be among their own occluders, which is then seen lane by lane.
     is_shared: bool,
@@ -54,11 +54,12 @@ impl LightOccluders {
             let n_lights = bounds.lights.len();
             return Self { lists: vec![Default::default(); n_lights], hidden: vec![false; n_lights], is_shared: false };
         }
+        let surface = &plan.scene.surfaces[face.surface];
         let side = |light_idx: usize, i: u32| bounds.lights[light_idx].spheres[i as usize].side;
         let hidden = (0..bounds.lights.len())
             .map(|light_idx| {
                 let among = plan.occluders(face.object, light_idx);
-                among.spheres.iter().any(|&i| side(light_idx, i) == Side::Closed)
+                !plan.adds(surface, light_idx) || among.spheres.iter().any(|&i| side(light_idx, i) == Side::Closed)
             })
             .collect();
         let lists = (0..bounds.lights.len())
@@ -99,7 +100,7 @@ impl LightOccluders {
 }
 
 impl LightOccluders {
-    /// Tells whether a light is hidden from all of the face.
+    /// Tells whether a light adds nothing to the face, or is hidden from all of it.
     pub fn is_hidden(&self, light_idx: usize) -> bool {
         self.hidden[light_idx]
     }
