@@ -8,7 +8,8 @@ use std::panic::{self, AssertUnwindSafe};
 use std::path::Path;
 
 use clisc::testing::{
-    assert_compiles_soundly, assert_formats_soundly, assert_parse_is_stable, assert_renders_soundly, assert_tokens_tile,
+    assert_compiles_soundly, assert_draws_soundly, assert_formats_soundly, assert_parses_soundly,
+    assert_renders_soundly, assert_tokens_tile, assert_ways_agree,
 };
 
 /// The folders that `fuzz/run` reads.
@@ -35,13 +36,23 @@ fn check_on_all(law: impl Fn(&[u8])) {
 fn parse_target_accepts_the_corpus() {
     check_on_all(|bytes| {
         assert_tokens_tile(bytes);
-        assert_parse_is_stable(bytes);
+        assert_parses_soundly(bytes);
     });
 }
 
 #[test]
 fn check_target_accepts_the_corpus() {
     check_on_all(assert_compiles_soundly);
+}
+
+#[test]
+fn ways_target_accepts_the_corpus() {
+    check_on_all(assert_ways_agree);
+}
+
+#[test]
+fn draw_target_accepts_the_corpus() {
+    check_on_all(assert_draws_soundly);
 }
 
 #[test]
@@ -52,6 +63,16 @@ fn format_target_accepts_the_corpus() {
 #[test]
 fn render_target_accepts_the_corpus() {
     check_on_all(assert_renders_soundly);
+}
+
+#[test]
+fn every_target_is_replayed_here() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let this = fs::read_to_string(root.join(file!())).expect("this file");
+    for path in tree::files_below(&root.join("fuzz/fuzz_targets")) {
+        let target = path.file_stem().expect("a name").to_string_lossy();
+        assert!(this.contains(&format!("fn {target}_target_accepts_the_corpus()")), "{target} is not replayed");
+    }
 }
 
 #[test]

@@ -16,7 +16,8 @@ use clisc::source::Source;
 use clisc::syntax::spec::COMMANDS;
 use clisc::syntax::{dump_ast, dump_ast_json, dump_tokens, dump_tokens_json, lex, parse};
 use clisc::testing::{
-    Explanation, Stream, assert_compiles_soundly, assert_parse_is_stable, assert_tokens_tile, explanation,
+    Explanation, Stream, assert_compiles_soundly, assert_draws_soundly, assert_parses_soundly, assert_tokens_tile,
+    assert_ways_agree, explanation,
 };
 use clisc::{MAX_LISTED, compile, ir};
 use proptest::prelude::*;
@@ -732,27 +733,31 @@ fn any_plain_scene() -> impl Strategy<Value = String> {
     prop::collection::vec(line, 0..20).prop_map(|lines| lines.concat())
 }
 
+/// Checks every law of the language wing.
+fn assert_keeps_laws(bytes: &[u8]) {
+    assert_tokens_tile(bytes);
+    assert_parses_soundly(bytes);
+    assert_ways_agree(bytes);
+    assert_compiles_soundly(bytes);
+    assert_draws_soundly(bytes);
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn any_bytes_keep_the_laws(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
-        assert_tokens_tile(&bytes);
-        assert_parse_is_stable(&bytes);
-        assert_compiles_soundly(&bytes);
+        assert_keeps_laws(&bytes);
     }
 
     #[test]
     fn any_near_scene_keeps_the_laws(text in any_scene()) {
-        assert_tokens_tile(text.as_bytes());
-        assert_parse_is_stable(text.as_bytes());
-        assert_compiles_soundly(text.as_bytes());
+        assert_keeps_laws(text.as_bytes());
     }
 
     #[test]
     fn any_plain_scene_keeps_the_laws(text in any_plain_scene()) {
-        assert_parse_is_stable(text.as_bytes());
-        assert_compiles_soundly(text.as_bytes());
+        assert_keeps_laws(text.as_bytes());
     }
 
     #[test]

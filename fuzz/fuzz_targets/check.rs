@@ -1,4 +1,4 @@
-//! Does any text break a law of what `clisc check` does: lowering it and drawing what is wrong with it?
+//! Does any text break a law of what `clisc check` finds out?
 
 #![no_main]
 

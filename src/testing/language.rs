@@ -32,18 +32,12 @@ pub fn assert_tokens_tile(bytes: &[u8]) {
     assert_eq!(*source.original_bytes(), *bytes, "the source does not keep its bytes");
 }
 
-/// Checks that parsing gives the same twice, and in chunks of any size.
+/// Checks that the commands of a scene lie in order and that their numbers are finite.
 ///
 /// # Panics
-/// When it does not.
-pub fn assert_parse_is_stable(bytes: &[u8]) {
-    let source = source(bytes);
-    let whole = parse(&source);
-    assert_eq!(parse(&source), whole, "parsed twice");
-    for chunk_bytes in [1, 7, 64] {
-        assert_eq!(parse_in_chunks(&source, chunk_bytes), whole, "parsed in chunks of {chunk_bytes}");
-    }
-    assert_short_way_leads_to(&source, &whole.file);
+/// When it is not so.
+pub fn assert_parses_soundly(bytes: &[u8]) {
+    let whole = parse(&source(bytes));
     let mut n_commands = 0;
     let mut end = 0;
     for command in whole.file.commands() {
@@ -53,6 +47,22 @@ pub fn assert_parse_is_stable(bytes: &[u8]) {
         end = command.span.end;
     }
     assert_eq!(whole.file.n_commands(), n_commands);
+}
+
+/// Checks that parsing and compiling give the same twice, stage by stage and in chunks of any size, and that parsing does
+/// without the short way.
+///
+/// # Panics
+/// When they do not.
+pub fn assert_ways_agree(bytes: &[u8]) {
+    let source = source(bytes);
+    let whole = parse(&source);
+    assert_eq!(parse(&source), whole, "parsed twice");
+    for chunk_bytes in [1, 7, 64] {
+        assert_eq!(parse_in_chunks(&source, chunk_bytes), whole, "parsed in chunks of {chunk_bytes}");
+    }
+    assert_short_way_leads_to(&source, &whole.file);
+    assert_stages_make(&source, &compile(&source));
 }
 
 /// Checks that tokens and grammar make the same of every line as the short way for plain lines.
@@ -69,8 +79,8 @@ fn assert_short_way_leads_to(source: &Source, short: &ast::File) {
     assert_eq!(bits(&long.file), bits(short), "the bits of the numbers without the short way");
 }
 
-/// Checks that the scene compiles to diagnostics that are in order and lie in the text, that they can be rendered, and
-/// that a scene without errors makes a valid program.
+/// Checks that the scene compiles to diagnostics that are in order and lie in the text, and that a scene without errors
+/// makes a valid program.
 ///
 /// # Panics
 /// When one of that is not so.
@@ -78,9 +88,21 @@ pub fn assert_compiles_soundly(bytes: &[u8]) {
     let source = source(bytes);
     let compilation = compile(&source);
     let found = &compilation.diagnostics;
-    assert_stages_make(&source, &compilation);
     assert!(found.is_sorted_by_key(|diagnostic| diagnostic.primary.span.start), "out of order: {found:#?}");
     found.iter().for_each(|diagnostic| assert_is_sound(&source, diagnostic));
+    if !compilation.has_errors() {
+        let violations = crate::ir::validate(compilation.program).err();
+        assert_eq!(violations, None, "the language let pass what the door refuses");
+    }
+}
+
+/// Checks that the diagnostics of a scene can be drawn, in each format.
+///
+/// # Panics
+/// When one of them can't.
+pub fn assert_draws_soundly(bytes: &[u8]) {
+    let source = source(bytes);
+    let found = &compile(&source).diagnostics;
     let mut out = Vec::new();
     for color in [Color::Never, Color::Always] {
         render_human(&source, found, color, &mut out).expect("written to memory");
@@ -89,10 +111,6 @@ pub fn assert_compiles_soundly(bytes: &[u8]) {
     let mut json = Vec::new();
     render_json(&source, found, &mut json).expect("written to memory");
     serde_json::from_slice::<serde_json::Value>(&json).expect("one JSON document");
-    if !compilation.has_errors() {
-        let violations = crate::ir::validate(compilation.program).err();
-        assert_eq!(violations, None, "the language let pass what the door refuses");
-    }
 }
 
 /// Checks that the stages one by one, and in chunks of any size, make what they make together.

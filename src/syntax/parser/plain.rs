@@ -2,7 +2,7 @@
 //!
 //! Nearly every line of a large scene is blank, a comment, or a command with as many numbers as it takes. Such a line is
 //! read here, some eight times as fast as by way of tokens and grammar. Any other is left to them; what this way takes,
-//! they would take too, and make the same of it (`testing::assert_parse_is_stable` holds both against each other).
+//! they would take too, and make the same of it (`testing::assert_ways_agree` holds both against each other).
 
 use crate::source::Span;
 use crate::syntax::spec::{self, Arguments, CommandSpec, MAX_NUMBERS};
