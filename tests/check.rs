@@ -5,7 +5,7 @@ mod support;
 use std::fs;
 use std::path::Path;
 
-use crate::support::{Folder, scene};
+use crate::support::{Call, Folder, scene};
 
 const BAD: &str = "fov 0\nwrite a.png\n";
 
@@ -441,4 +441,79 @@ fn color_is_as_it_is_asked_for() {
     assert!(is_colored(&["--color=always", "check", "a.cli"]), "before the command as well as behind it");
     assert!(!is_colored(&["check", "a.cli", "--color", "never"]));
     assert!(!is_colored(&["check", "a.cli"]), "a pipe is no terminal");
+}
+
+/// As an editor has it, which knows the file of a text that is not saved.
+#[test]
+fn standard_input_stands_for_the_file_that_is_named() {
+    let folder = Folder::new();
+    folder.put("sub/clisc.toml", "[lint.rules]\nno-fov = \"off\"\n");
+    let text = scene("b.png").replace("fov 60\n", "");
+    let call = |args: &[&str]| -> Call {
+        folder.command(args).write_stdin(text.as_str()).output().expect("a command that starts").into()
+    };
+    let named = ["-", "--stdin-filename", "sub/a.cli", "--format", "short"];
+    for command in ["check", "lint"] {
+        let unnamed = call(&[command, "-", "--format", "short"]).stdout;
+        assert!(unnamed.starts_with("<stdin>:") && unnamed.contains("W0302"), "{unnamed}");
+        let found = call(&[&[command][..], &named].concat()).stdout;
+        assert!(!found.contains("W0302") && !found.contains("<stdin>"), "{found}");
+    }
+    folder.put("sub/clisc.toml", "[lint.rules]\nno-fov = \"error\"\n");
+    let found = call(&[&["check"][..], &named].concat());
+    assert_eq!(
+        (found.code, found.stdout.starts_with("sub/a.cli:5:1: error[W0302]")),
+        (Some(1), true),
+        "{}",
+        found.stdout
+    );
+    let formatted = call(&["fmt", "-", "--stdin-filename", "sub/a.cli", "--check"]);
+    assert_eq!((formatted.code, formatted.stdout.as_str()), (Some(1), "sub/a.cli\n"));
+    let other = call(&["check", "sub/a.cli", "--stdin-filename", "sub/a.cli"]);
+    assert_eq!(other.code, Some(2));
+    assert!(other.stderr.contains("write `-` for it"), "{}", other.stderr);
+}
+
+#[test]
+fn a_file_called_as_standard_input_is_another() {
+    let folder = Folder::new();
+    folder.put("-", "fov 0\n");
+    let call = folder.command(&["check", "-", "./-", "-", "--format", "short"]).write_stdin("fov 181\n").output();
+    let call: Call = call.expect("a command that starts").into();
+    let places: Vec<_> =
+        call.stdout.lines().filter(|line| line.contains("E0401")).map(|line| line.split(':').next()).collect();
+    assert_eq!(places, [Some("<stdin>"), Some("./-")], "{}", call.stdout);
+}
+
+#[test]
+fn a_file_that_is_no_text_is_named_once() {
+    let folder = Folder::with_scene(&scene("first.png"));
+    assert_eq!(folder.clisc(&["run", "a.cli", "--size", "4x4"]).code, Some(0));
+    folder.put("photo.cli", b"\xFF\xD8\xFF\xE0\0\x10JFIF");
+    folder.put("b.cli.gz", b"\x1F\x8B\x08\0");
+    for (file, what) in
+        [("first.png", "a PNG image"), ("photo.cli", "a JPEG image"), ("b.cli.gz", "compressed with gzip")]
+    {
+        for command in ["check", "lint", "run", "ir", "fmt", "bench"] {
+            let call = folder.clisc(&[command, file]);
+            assert_eq!((call.code, call.stdout.as_str()), (Some(2), ""), "{command}: {}", call.stderr);
+            let message = format!("error: cannot read `{file}`: it is {what}, not a scene\n");
+            assert!(call.stderr.starts_with(&message), "{command}: {}", call.stderr);
+        }
+    }
+}
+
+#[test]
+fn a_forgotten_ending_is_offered() {
+    let folder = Folder::with_scene(&scene("a.png"));
+    for command in ["check", "run", "ir"] {
+        let call = folder.clisc(&[command, "a"]);
+        assert_eq!(call.code, Some(2));
+        assert!(
+            call.stderr.contains("cannot read `a`: ") && call.stderr.contains("did you mean `a.cli`?"),
+            "{}",
+            call.stderr
+        );
+        assert!(!folder.clisc(&[command, "b"]).stderr.contains("mean"));
+    }
 }

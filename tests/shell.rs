@@ -2,7 +2,7 @@
 
 mod support;
 
-use crate::support::Folder;
+use crate::support::{Folder, scene};
 
 /// The commands of the program, as its help lists them.
 fn commands(folder: &Folder) -> Vec<String> {
@@ -71,4 +71,88 @@ fn the_version_names_the_backends() {
     let long = folder.clisc(&["--version"]).stdout;
     assert!(long.starts_with(&format!("clisc {version}")) && long.contains("\nbackends: "), "{long}");
     assert!(long.contains("scalar"), "{long}");
+}
+
+/// Texts fill the lines they have, and no option is called after its type.
+#[test]
+fn help_is_wrapped_to_the_width_and_its_values_have_names() {
+    let folder = Folder::new();
+    for command in commands(&folder) {
+        for width in [60, 100, 140] {
+            let output = folder.command(&[&command, "--help"]).env("COLUMNS", width.to_string()).output();
+            let help = String::from_utf8(output.expect("a command that starts").stdout).expect("text");
+            let lines: Vec<&str> = help.lines().collect();
+            for pair in lines.windows(2).filter(|pair| pair.iter().all(|line| line.starts_with(char::is_alphanumeric)))
+            {
+                let word = pair[1].split(' ').next().expect("a word");
+                assert!(
+                    pair[0].chars().count() + 1 + word.len() > width,
+                    "{command}, {width}: {}\n{}",
+                    pair[0],
+                    pair[1]
+                );
+            }
+            assert!(lines.iter().all(|line| line.chars().count() <= width), "{command}, {width}: {help}");
+        }
+        let help = folder.clisc(&[&command, "--help"]).stdout;
+        for vague in ["<SIZE>", "<PART>", "<PRECISION>", "<SAMPLE_AT>", "<EMIT>", "<WxH>"] {
+            assert!(!help.contains(vague), "{command}: {vague}");
+        }
+    }
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn what_cannot_be_printed_is_a_fault() {
+    use std::process::{Command, Stdio};
+
+    let folder = Folder::with_scene(&scene("a.png"));
+    let full = || std::fs::File::options().write(true).open("/dev/full").expect("a device that is always full");
+    let call = |args: &[&str], stdout: Stdio, stderr: Stdio| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_clisc"));
+        command.current_dir(folder.at(".")).args(args).stdout(stdout).stderr(stderr);
+        command.output().expect("a command that starts")
+    };
+    for args in [
+        &["--help"][..],
+        &["-h"],
+        &["help"],
+        &["run", "--help"],
+        &["--version"],
+        &["-V"],
+        &["completions", "zsh"],
+        &["man"],
+        &["man", "run"],
+        &["explain"],
+        &["explain", "E0203"],
+        &["ir", "a.cli"],
+        &["check", "a.cli", "--format", "json"],
+        &["run", "a.cli", "--size", "4x4"],
+    ] {
+        let output = call(args, full().into(), Stdio::piped());
+        let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{args:?}: {stderr}");
+        assert!(stderr.contains("error: cannot write to standard output"), "{args:?}: {stderr}");
+        let output = call(args, Stdio::null(), Stdio::piped());
+        assert_eq!(output.status.code(), Some(0), "{args:?}");
+    }
+    // What nobody could be told of is not fine.
+    for args in [&["check", "a.cli"][..], &["fmt", "--check", "a.cli"], &["run"]] {
+        assert_eq!(call(args, Stdio::null(), full().into()).status.code(), Some(2), "{args:?}");
+    }
+}
+
+#[test]
+fn a_forgotten_command_is_offered() {
+    let folder = Folder::with_scene(&scene("a.png"));
+    for (word, what) in [("a.cli", "a scene"), ("missing.cli", "a scene"), (".", "a folder")] {
+        let call = folder.clisc(&[word, "--size", "4x4"]);
+        assert_eq!((call.code, call.stdout.as_str()), (Some(2), ""));
+        for words in [format!("`{word}` is {what}"), format!("clisc run {word} "), format!("clisc check {word} ")] {
+            assert!(call.stderr.contains(&words), "{words}: {}", call.stderr);
+        }
+    }
+    let call = folder.clisc(&["chek", "a.cli"]);
+    assert!(call.code == Some(2) && call.stderr.contains("'check'"), "{}", call.stderr);
+    assert_eq!(folder.listing(), ["a.cli"]);
 }

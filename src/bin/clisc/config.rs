@@ -24,14 +24,13 @@ impl Configs {
     /// # Errors
     /// When its configuration cannot be read or is none.
     pub fn options_for(&self, scene: &Path) -> anyhow::Result<Options> {
-        let folder = match scene.parent() {
-            _ if input::is_stdin(scene) => PathBuf::from("."),
+        let file = input::file_of(scene);
+        let folder = match file.and_then(Path::parent) {
             None => PathBuf::from("."),
             Some(folder) if folder == Path::new("") => PathBuf::from("."),
             Some(folder) => folder.to_owned(),
         };
-        let file_stem = scene.file_stem().filter(|_| !input::is_stdin(scene));
-        let file_stem = file_stem.map(|stem| stem.to_string_lossy().into_owned());
+        let file_stem = file.and_then(Path::file_stem).map(|stem| stem.to_string_lossy().into_owned());
         let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(options) = known.get(&folder) {
             return Ok(options.clone().for_file(file_stem));

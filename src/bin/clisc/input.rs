@@ -4,11 +4,14 @@ use std::collections::HashSet;
 use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
-use anyhow::Context;
+use anyhow::{Context, bail};
 use clisc::source::{Source, SourceError};
 use rayon::prelude::*;
 
+use crate::args::StdinArgs;
+use crate::magic;
 use crate::walk::{self, Found};
 
 /// What messages call standard input.
@@ -17,22 +20,64 @@ const STDIN_NAME: &str = "<stdin>";
 /// From so many bytes on no source is made: there is no need to read on.
 const TOO_LARGE: u64 = u32::MAX as u64;
 
+/// The file that standard input stands for; set once, before anything is read.
+static STDIN_FILE: OnceLock<PathBuf> = OnceLock::new();
+
+/// Takes `--stdin-filename` into account from now on.
+///
+/// # Errors
+/// When standard input is none of the scenes: what was named is another file than the one that is read.
+pub fn name_stdin(stdin: &StdinArgs, paths: &[PathBuf]) -> anyhow::Result<()> {
+    let Some(file) = stdin.filename() else { return Ok(()) };
+    if !paths.iter().any(|path| is_stdin(path)) {
+        bail!("--stdin-filename names standard input, which is not among the scenes: write `-` for it");
+    }
+    let _ = STDIN_FILE.set(file.to_owned());
+    Ok(())
+}
+
+/// Returns the file that an argument means; `None` for standard input without a name.
+pub fn file_of(path: &Path) -> Option<&Path> {
+    if is_stdin(path) { STDIN_FILE.get().map(PathBuf::as_path) } else { Some(path) }
+}
+
+/// Returns what messages call a scene.
+pub fn name_of(path: &Path) -> String {
+    file_of(path).map_or_else(|| STDIN_NAME.to_owned(), |file| file.display().to_string())
+}
+
 /// Reads a scene file; `-` is standard input.
 ///
 /// # Errors
-/// When it cannot be read or is too large for a scene; the message names it.
+/// When it cannot be read, is too large for a scene or is known to be something else; the message names it.
 pub fn read(path: &Path) -> anyhow::Result<Source> {
-    if is_stdin(path) {
-        let mut bytes = Vec::new();
-        io::stdin().lock().take(TOO_LARGE).read_to_end(&mut bytes).context("cannot read standard input")?;
-        return Ok(Source::from_bytes(STDIN_NAME, bytes)?);
-    }
-    let name = path.display();
-    let read = || anyhow::Ok(Source::from_bytes(name.to_string(), read_file(path)?)?);
-    read().with_context(|| format!("cannot read `{name}`"))
+    let name = name_of(path);
+    let bytes = if is_stdin(path) { read_stdin() } else { read_file(path).map_err(|error| with_hint(path, error)) };
+    let source = bytes.and_then(|bytes| match magic::kind_of(&bytes) {
+        Some(kind) => bail!("it is {kind}, not a scene"),
+        None => Ok(Source::from_bytes(name.clone(), bytes)?),
+    });
+    source.with_context(|| format!("cannot read `{name}`"))
 }
 
-/// Tells whether an argument means standard input.
+fn read_stdin() -> anyhow::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    io::stdin().lock().take(TOO_LARGE).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+/// Adds to the error of a file that is not there which one was probably meant.
+fn with_hint(path: &Path, error: anyhow::Error) -> anyhow::Error {
+    let is_missing = error.downcast_ref::<io::Error>().is_some_and(|error| error.kind() == io::ErrorKind::NotFound);
+    let mut meant = path.as_os_str().to_owned();
+    meant.push(".cli");
+    match Path::new(&meant) {
+        meant if is_missing && meant.is_file() => anyhow::anyhow!("{error}; did you mean `{}`?", meant.display()),
+        _ => error,
+    }
+}
+
+/// Tells whether an argument means standard input. A file that is called so is `./-`.
 pub fn is_stdin(path: &Path) -> bool {
     path == Path::new("-")
 }
@@ -84,8 +129,13 @@ pub fn find_all_scenes(paths: &[PathBuf]) -> Found {
     let mut seen = HashSet::new();
     let mut all = Found::default();
     for path in paths {
-        let found = if path.is_dir() { walk::scenes_below(path) } else { Found::only(path) };
-        let is_new = |path: &PathBuf| seen.insert(fs::canonicalize(path).unwrap_or_else(|_| path.clone()));
+        let is_folder = !is_stdin(path) && path.is_dir();
+        let found = if is_folder { walk::scenes_below(path) } else { Found::only(path) };
+        let identity = |path: &PathBuf| match fs::canonicalize(path) {
+            Ok(real) if !is_stdin(path) => real,
+            _ => path.clone(),
+        };
+        let is_new = |path: &PathBuf| seen.insert(identity(path));
         all.scenes.extend(found.scenes.into_iter().filter(is_new));
         all.problems.extend(found.problems);
     }

@@ -10,6 +10,7 @@ mod disk;
 mod input;
 mod interrupt;
 mod lsp;
+mod magic;
 mod outcome;
 mod print;
 mod problems;
@@ -21,23 +22,33 @@ mod walk;
 
 use std::process::ExitCode;
 
-use clap::Parser;
-
 use crate::args::{Cli, Command};
 use crate::outcome::Outcome;
 
 fn main() -> ExitCode {
-    let cli = Cli::parse();
-    print::decide_color(cli.color);
-    let code = run(&cli).unwrap_or_else(|error| {
-        print::to_stderr(&format!("error: {error:#}\n"));
-        Outcome::Environment.into()
+    let ended = Cli::of_process().and_then(|cli| match cli {
+        Ok(cli) => {
+            print::decide_color(cli.color);
+            let code = run(&cli).unwrap_or_else(tell);
+            let is_quiet = matches!(&cli.command, Command::Run(args) if args.quiet);
+            if !is_quiet {
+                print::explained_to_stderr();
+            }
+            Ok(code)
+        }
+        Err(outcome) => Ok(outcome.into()),
     });
-    let is_quiet = matches!(&cli.command, Command::Run(args) if args.quiet);
-    if !is_quiet {
-        print::explained_to_stderr();
-    }
-    code
+    let code = ended.unwrap_or_else(tell);
+    // Nobody has been told what is wrong.
+    let is_lost =
+        print::has_lost_messages() && [Outcome::Fine, Outcome::SceneErrors].map(ExitCode::from).contains(&code);
+    if is_lost { Outcome::Environment.into() } else { code }
+}
+
+/// Says why a command could not do its work.
+fn tell(error: anyhow::Error) -> ExitCode {
+    print::to_stderr(&format!("error: {error:#}\n"));
+    Outcome::Environment.into()
 }
 
 fn run(cli: &Cli) -> anyhow::Result<ExitCode> {

@@ -3,9 +3,11 @@
 //! A reader that has seen enough (`clisc ir x.cli | head`) is no fault: a broken pipe is ignored.
 
 use std::io::{self, BufWriter, ErrorKind, IsTerminal, Write};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, OnceLock, PoisonError};
 
 use anyhow::Context;
+use clap::builder::StyledStr;
 use clisc::Compilation;
 use clisc::diag::render::{Color, Explained, Format, Report, Screen, harmless, render_human};
 use clisc::diag::words::counted;
@@ -25,7 +27,7 @@ pub fn stdout() -> impl Write {
 
 /// Returns standard error, buffered, for messages of any length; it has to be flushed.
 pub fn stderr() -> impl Write {
-    BufWriter::new(Patient(io::stderr().lock()))
+    BufWriter::new(Watched(Patient(io::stderr().lock())))
 }
 
 /// Begins a report on standard output; it has to be [finished](finish).
@@ -61,10 +63,35 @@ pub fn to_stdout(text: &str) -> anyhow::Result<()> {
     stdout.write_all(harmless(text).as_bytes()).and_then(|()| stdout.flush()).context(CANNOT_WRITE)
 }
 
-/// Prints messages to standard error. There is no place left to say that this failed.
+/// Prints text of clap to standard output, with its own colours.
+///
+/// # Errors
+/// As [`to_stdout`].
+pub fn help_to_stdout(text: &StyledStr) -> anyhow::Result<()> {
+    let mut stdout = stdout();
+    let text = if stdout_has_color() { text.ansi().to_string() } else { text.to_string() };
+    stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()).context(CANNOT_WRITE)
+}
+
+/// Prints text of clap to standard error, with its own colours.
+pub fn usage_to_stderr(text: &StyledStr) {
+    let mut stderr = stderr();
+    let text = if stderr_has_color() { text.ansi().to_string() } else { text.to_string() };
+    let _ = stderr.write_all(text.as_bytes()).and_then(|()| stderr.flush());
+}
+
+/// Prints messages to standard error. There is no place left to say that this failed, but the exit code.
 pub fn to_stderr(text: &str) {
-    let mut stderr = io::stderr().lock();
+    let mut stderr = stderr();
     let _ = stderr.write_all(harmless(text).as_bytes()).and_then(|()| stderr.flush());
+}
+
+/// Whether a message could not be written to standard error.
+static HAS_LOST_MESSAGES: AtomicBool = AtomicBool::new(false);
+
+/// Tells whether a message could not be written, except that nobody reads them.
+pub fn has_lost_messages() -> bool {
+    HAS_LOST_MESSAGES.load(Ordering::Relaxed)
 }
 
 /// Says of a scene how much was found in it that is not listed, if there is any.
@@ -151,5 +178,22 @@ impl<W: Write> Write for Patient<W> {
             Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
             result => result,
         }
+    }
+}
+
+/// Standard error, which notes when a message is lost.
+struct Watched<W>(W);
+
+impl<W: Write> Write for Watched<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let written = self.0.write(bytes);
+        if written.as_ref().is_err_and(|error| error.kind() != ErrorKind::Interrupted) {
+            HAS_LOST_MESSAGES.store(true, Ordering::Relaxed);
+        }
+        written
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.0.flush()
     }
 }

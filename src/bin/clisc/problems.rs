@@ -8,11 +8,11 @@ use anyhow::Context;
 use clisc::diag::Severity;
 use clisc::diag::render::{Notification, Report};
 
-use crate::print;
+use crate::{input, print};
 
-/// Makes a notification of an error at a path.
+/// Makes a notification of an error at a path, as arguments have it.
 pub fn error(path: Option<&Path>, error: &anyhow::Error) -> Notification {
-    Notification::error(path, format!("{error:#}"))
+    Notification::error(path.and_then(input::file_of), format!("{error:#}"))
 }
 
 /// The problems of a run so far.

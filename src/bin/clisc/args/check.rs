@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::args::ReportFormat;
+use crate::args::{ReportFormat, StdinArgs};
 
 /// Arguments of `clisc check`.
 #[derive(Args, Debug)]
@@ -16,6 +16,9 @@ pub struct CheckArgs {
     /// out. A path that is named here is always read.
     #[arg(value_name = "PATH", required = true)]
     pub paths: Vec<PathBuf>,
+    /// What standard input is called.
+    #[command(flatten)]
+    pub stdin: StdinArgs,
     /// How to show what was found.
     #[arg(long, value_enum, default_value_t)]
     pub format: ReportFormat,

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::args::ReportFormat;
+use crate::args::{ReportFormat, StdinArgs};
 
 /// Arguments of `clisc fmt`.
 #[derive(Args, Debug)]
@@ -16,6 +16,9 @@ pub struct FmtArgs {
     /// out. A path that is named here is always read.
     #[arg(value_name = "PATH", required = true)]
     pub paths: Vec<PathBuf>,
+    /// What standard input is called.
+    #[command(flatten)]
+    pub stdin: StdinArgs,
     /// Save nothing; list the scenes that would change, and exit with 1 when there are any.
     #[arg(long)]
     pub check: bool,
@@ -37,6 +40,6 @@ Examples:
   clisc fmt two.cli --diff    what would change
   clisc fmt - < a.cli         for editors: standard input to standard output
 
-The program stays the same to the bit, every comment stays in order, and a line with an error is left exactly as it is.
-Numbers keep the digits that were written; .5 and 1. alone get their zeros. Between the comments `# clisc: off` and
+The program stays the same to the bit, every comment stays in order, and a line with an error is left exactly as it is. \
+Numbers keep the digits that were written; .5 and 1. alone get their zeros. Between the comments `# clisc: off` and \
 `# clisc: on`, each alone on its line, all stays as it is. docs/formatting.md has the whole form.";

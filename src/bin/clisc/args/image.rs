@@ -1,26 +1,28 @@
 //! What an image is asked for: the options shared by the commands that plan or trace one.
 
 use clap::builder::PossibleValue;
-use clap::{Args, ValueEnum, value_parser};
+use clap::{Args, ValueEnum};
 use clisc::plan::{self, BackendChoice, ExactWork, Pass, Passes, Settings, Size};
+
+use super::number::whole;
 
 /// What an image is asked for.
 #[derive(Args, Debug)]
 pub struct ImageArgs {
     /// Width and height of the images in pixels, each at most 65535.
-    #[arg(long, value_name = "WxH", default_value = "300x300", value_parser = parse_size)]
+    #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "300x300", value_parser = parse_size)]
     pub size: Size,
     /// The rules: a, spheres with diffuse light only; b, the whole language.
-    #[arg(long, value_enum, default_value_t, hide_possible_values = true, ignore_case = true)]
+    #[arg(long, value_enum, value_name = "a|b", default_value_t, hide_possible_values = true, ignore_case = true)]
     pub part: Part,
     /// Samples a pixel, N by N, at most 256; smooths edges.
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u32).range(1..=i64::from(Settings::MAX_SAMPLES)))]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole::<u32>(1..=Settings::MAX_SAMPLES))]
     pub samples: u32,
     /// Where in its pixel a sample lies.
-    #[arg(long, value_enum, default_value_t)]
+    #[arg(long, value_enum, value_name = "PLACE", default_value_t)]
     pub sample_at: SampleAt,
     /// The last level that is shaded: the eye ray has level 0, its reflection level 1, and so on; at most 65535.
-    #[arg(long, value_name = "N", default_value_t = 8, value_parser = value_parser!(u32).range(..=i64::from(Settings::MAX_LEVEL)))]
+    #[arg(long, value_name = "N", default_value_t = 8, value_parser = whole::<u32>(0..=Settings::MAX_LEVEL))]
     pub max_level: u32,
     /// The arithmetic. certified: every pixel is proved, in arbitrary precision where need be; this is the default, as long
     /// as an image takes no more exact work than ties along some of its rows and columns do, which depends on the scene
@@ -29,7 +31,7 @@ pub struct ImageArgs {
     /// all of it in arbitrary precision, by another renderer; slow. f32: a faster draft; of 270,000 channels of a 300x300
     /// scene measured, at most 69 were wrong, mostly by one level. --stats counts the pixels that were drafted; several
     /// samples, many objects or the eye inside an object make it f64.
-    #[arg(long, value_enum, hide_possible_values = true, ignore_case = true)]
+    #[arg(long, value_enum, value_name = "ARITHMETIC", hide_possible_values = true, ignore_case = true)]
     pub precision: Option<Precision>,
     /// Do all the work that clisc can prove needless, or that of the passes named, separated by commas; for comparison,
     /// no pixel depends on it.

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
+use super::StdinArgs;
 use super::image::ImageArgs;
 
 /// Arguments of `clisc ir`.
@@ -13,8 +14,11 @@ pub struct IrArgs {
     /// The scene; - is standard input.
     #[arg(value_name = "SCENE")]
     pub scene: PathBuf,
+    /// What standard input is called.
+    #[command(flatten)]
+    pub stdin: StdinArgs,
     /// The stage to show.
-    #[arg(long, value_enum, default_value_t)]
+    #[arg(long, value_enum, value_name = "STAGE", default_value_t)]
     pub emit: Emit,
     /// How to show it.
     #[arg(long, value_enum, default_value_t)]

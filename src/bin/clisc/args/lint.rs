@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::args::ReportFormat;
+use crate::args::{ReportFormat, StdinArgs};
 
 /// Arguments of `clisc lint`.
 #[derive(Args, Debug)]
@@ -16,6 +16,9 @@ pub struct LintArgs {
     /// out. A path that is named here is always read.
     #[arg(value_name = "PATH", required = true)]
     pub paths: Vec<PathBuf>,
+    /// What standard input is called.
+    #[command(flatten)]
+    pub stdin: StdinArgs,
     /// Carry out the safe fixes, of errors first, and save the scenes; of standard input, print it.
     #[arg(long)]
     pub fix: bool,
@@ -43,5 +46,5 @@ Examples:
 
 Exit codes: 0 nothing found, 1 something was (with --diff: or would change), 2 wrong usage or a fault outside the scene.
 
-`# clisc: allow(RULE)` behind a command, or on a line above it, allows a finding there. `clisc.toml`, in the folder of the
+`# clisc: allow(RULE)` behind a command, or on a line above it, allows a finding there. `clisc.toml`, in the folder of the \
 scene or one above, sets levels: docs/lint.md has every rule and the whole of the file.";

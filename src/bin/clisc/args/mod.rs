@@ -11,8 +11,11 @@ mod ir;
 mod lint;
 mod lsp;
 mod man;
+mod number;
 mod report;
 mod run;
+mod stdin;
+mod usage;
 
 use clap::error::ErrorKind;
 use clap::{ArgMatches, Args, FromArgMatches, Parser, Subcommand, ValueEnum};
@@ -29,6 +32,7 @@ pub use lsp::LspArgs;
 pub use man::ManArgs;
 pub use report::ReportFormat;
 pub use run::{RunArgs, StatsFormat};
+pub use stdin::StdinArgs;
 
 use crate::version;
 

@@ -2,10 +2,12 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum, value_parser};
+use clap::{Args, ValueEnum};
 
+use super::StdinArgs;
 use super::backend::BackendArgs;
 use super::image::ImageArgs;
+use super::number::whole;
 
 /// Arguments of `clisc run`.
 #[derive(Args, Debug)]
@@ -14,6 +16,9 @@ pub struct RunArgs {
     /// Scenes; - is standard input.
     #[arg(value_name = "SCENE", required = true)]
     pub scenes: Vec<PathBuf>,
+    /// What standard input is called.
+    #[command(flatten)]
+    pub stdin: StdinArgs,
     /// The folder below which images are saved; made when missing.
     #[arg(short, long, value_name = "DIR", default_value = ".")]
     pub out_dir: PathBuf,
@@ -24,7 +29,7 @@ pub struct RunArgs {
     #[command(flatten)]
     pub backend: BackendArgs,
     /// Threads to render with, at most 1024; 0 means one a core.
-    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true, value_parser = value_parser!(u16).range(..=MAX_THREADS))]
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true, value_parser = whole::<u16>(0..=MAX_THREADS))]
     pub threads: u16,
     /// Print times and counts; --stats=json prints one JSON document in place of the other results.
     #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, require_equals = true, default_missing_value = "table")]
@@ -42,7 +47,7 @@ pub struct RunArgs {
 }
 
 /// The most threads to render with: more only cost, and a hundred thousand would not even start.
-pub(super) const MAX_THREADS: i64 = 1024;
+pub(super) const MAX_THREADS: u32 = 1024;
 
 const RUN_EXAMPLES: &str = "\
 Examples:

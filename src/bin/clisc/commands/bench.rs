@@ -20,11 +20,12 @@ use self::report::{Report, SceneReport};
 use crate::args::BenchArgs;
 use crate::interrupt::Interrupts;
 use crate::outcome::Outcome;
-use crate::{input, print};
+use crate::{disk, input, print};
 
 /// Measures scenes one after the other. A scene with errors does not keep the others from being measured; a file that
 /// cannot be read or saved ends it.
 pub fn run(args: &BenchArgs) -> anyhow::Result<ExitCode> {
+    input::name_stdin(&args.stdin, &args.scenes)?;
     rayon::ThreadPoolBuilder::new()
         .num_threads(args.threads.into())
         .use_current_thread()
@@ -55,7 +56,7 @@ pub fn run(args: &BenchArgs) -> anyhow::Result<ExitCode> {
     }
     // What was measured before an interruption is worth keeping.
     if let Some(file) = &args.json {
-        fs::write(file, report.json()?).with_context(|| format!("cannot write `{}`", file.display()))?;
+        disk::save(file, report.json()?.as_bytes()).with_context(|| format!("cannot save `{}`", file.display()))?;
     }
     Ok(outcome.into())
 }
@@ -85,7 +86,7 @@ fn measure(
     cancellation: &CancellationToken,
 ) -> anyhow::Result<Option<SceneReport>> {
     let Some(view) = last_view(program) else {
-        bail!("`{}` has no `write`: there is no image to measure", path.display());
+        bail!("`{}` has no `write`: there is no image to measure", input::name_of(path));
     };
     let is_cancelled = &|| cancellation.is_cancelled();
     let bench = Bench { view, size: args.size, backend, repeat: args.repeat, is_cancelled };
@@ -108,10 +109,10 @@ fn last_view(program: &Valid) -> Option<SceneView<'_>> {
 
 /// Saves a plot for each comparison of a scene.
 fn save_plots(folder: &Path, scene: &Path, report: &SceneReport) -> anyhow::Result<()> {
-    let stem = scene.file_stem().filter(|stem| *stem != "-").map_or("stdin".into(), |stem| stem.to_string_lossy());
+    let stem = input::file_of(scene).and_then(Path::file_stem).map_or("stdin".into(), |stem| stem.to_string_lossy());
     for (what, plot) in report.plots()? {
         let file = folder.join(format!("{stem}-{what}.svg"));
-        fs::write(&file, plot).with_context(|| format!("cannot write `{}`", file.display()))?;
+        disk::save(&file, plot.as_bytes()).with_context(|| format!("cannot save `{}`", file.display()))?;
     }
     Ok(())
 }

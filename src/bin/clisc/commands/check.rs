@@ -21,6 +21,7 @@ use crate::{input, print};
 /// Checks scenes, on all cores and told of in the order given. What is wrong with them is the result and goes to standard
 /// output; a scene that cannot be read does not keep the others from being checked.
 pub fn run(args: &CheckArgs) -> anyhow::Result<ExitCode> {
+    input::name_stdin(&args.stdin, &args.paths)?;
     let mut tally = Tally::default();
     let Found { scenes, problems } = input::find_all_scenes(&args.paths);
     let mut report = print::report(args.format)?;

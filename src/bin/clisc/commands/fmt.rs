@@ -20,6 +20,7 @@ use crate::{disk, input, print};
 /// Formats scenes, on all cores and told of in the order given. A scene that cannot be read or saved does not keep the
 /// others from being formatted.
 pub fn run(args: &FmtArgs) -> anyhow::Result<ExitCode> {
+    input::name_stdin(&args.stdin, &args.paths)?;
     let mut tally = Tally::default();
     let Found { scenes, problems } = input::find_all_scenes(&args.paths);
     let mut report = args.format.map(print::report).transpose()?;

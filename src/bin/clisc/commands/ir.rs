@@ -17,6 +17,7 @@ use crate::{input, print};
 /// Shows a stage of the compiler. What is wrong with the scene goes to standard error; a scene with errors still has
 /// tokens and a tree, but nothing behind them.
 pub fn run(args: &IrArgs) -> anyhow::Result<ExitCode> {
+    input::name_stdin(&args.stdin, std::slice::from_ref(&args.scene))?;
     let source = input::read(&args.scene)?;
     let compilation = clisc::compile(&source);
     let has_errors = compilation.has_errors();

@@ -22,6 +22,7 @@ use crate::{disk, input, print};
 /// Lints scenes, on all cores and told of in the order given. A scene that cannot be read or saved does not keep the others
 /// from being linted.
 pub fn run(args: &LintArgs) -> anyhow::Result<ExitCode> {
+    input::name_stdin(&args.stdin, &args.paths)?;
     let configs = Configs::default();
     // A name that is no rule is told before anything is read.
     choose(args, &mut Options::default())?;

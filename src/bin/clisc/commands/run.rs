@@ -30,6 +30,7 @@ use crate::{input, print, threads};
 
 /// Renders scenes and saves their images. A fault in one scene does not keep the others from being rendered.
 pub fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
+    input::name_stdin(&args.stdin, &args.scenes)?;
     let mut settings = Settings { backend: args.backend.choice()?, ..args.image.settings() };
     if args.certificate.is_some() {
         settings.exact_work = ExactWork::Unlimited;

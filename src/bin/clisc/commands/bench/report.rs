@@ -10,6 +10,7 @@ use serde::Serialize;
 use super::error::Errors;
 use super::measure::REFERENCE_SAMPLES;
 use super::plot;
+use crate::input;
 
 /// The version of the JSON document: a field may be added, none changes its meaning without a new version.
 const VERSION: u32 = 1;
@@ -115,7 +116,7 @@ impl SceneReport {
         mark_front(&mut modes);
         mark_front(&mut samples);
         Self {
-            scene: path.display().to_string(),
+            scene: input::name_of(path),
             width: size.width(),
             height: size.height(),
             truth: TRUTH,

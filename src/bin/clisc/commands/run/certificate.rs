@@ -10,7 +10,7 @@ use clisc::exec::{Proof, WriteReport};
 use clisc::plan::{Part, SampleAt, Settings};
 use serde::Serialize;
 
-use crate::disk;
+use crate::{disk, input};
 
 /// The version of the document: a field may be added, none changes its meaning without a new version.
 const VERSION: u32 = 1;
@@ -115,7 +115,7 @@ impl Certificate {
         for report in reports {
             if let (Some(proof), Some(crc32)) = (&report.proof, report.crc32) {
                 self.images.push(ImageCertificate {
-                    scene: scene.display().to_string(),
+                    scene: input::name_of(scene),
                     write: report.name.clone(),
                     path: disk::shown(out_dir, &report.name).display().to_string(),
                     width: report.size.width(),

@@ -10,8 +10,8 @@ use clisc::trace::kernels::Backend;
 use clisc::trace::{Counts, Spared};
 use serde::{Serialize, Serializer};
 
-use crate::disk;
 use crate::outcome::Outcome;
+use crate::{disk, input};
 
 /// The version of the JSON document: a field may be added, none changes its meaning without a new version.
 const VERSION: u32 = 1;
@@ -116,7 +116,7 @@ impl SceneStats {
     /// Makes the stats of a scene of which nothing is done yet.
     pub fn new(path: &Path) -> Self {
         Self {
-            scene: path.display().to_string(),
+            scene: input::name_of(path),
             outcome: Outcome::Fine,
             parse: Duration::ZERO,
             lower: Duration::ZERO,
