@@ -20,7 +20,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("plan", &["ir", "math", "source"]),
     ("trace", &["ir", "plan", "math", "image"]),
     ("exact", &["ir", "image"]),
-    ("exec", &["ir", "plan", "trace", "exact", "image", "diag"]),
+    ("exec", &["source", "ir", "plan", "trace", "exact", "image", "diag"]),
     ("format", &["source", "diag", "syntax", "lower", "exec"]),
     ("lint", &["source", "diag", "syntax", "compile", "ir", "plan", "trace", "exec"]),
     ("ide", &["source", "diag", "syntax", "lint"]),

@@ -118,6 +118,8 @@ codes! {
     ABSOLUTE_NAME = Error "E0501": "absolute file name";
     PARENT_FOLDER = Error "E0502": "file name that climbs with `..`";
     LINK_LEADS_OUT = Error "E0503": "link that leads out of the output folder";
+    UNSEEN_CHARACTER = Error "E0504": "file name with a character that does not show";
+    READ_ONLY = Error "E0505": "read-only image";
     // W03: meaning.
     NO_WRITE = Warning "W0301" "no-write": "no `write`";
     NO_FOV = Warning "W0302" "no-fov": "no `fov` before a `write`";

@@ -1,5 +1,7 @@
 //! The small change of messages: quotes, lists and counts in words.
 
+use std::borrow::Cow;
+
 /// The most characters of a word of a scene that a message quotes.
 const MAX_QUOTED: usize = 40;
 /// The most characters of a line that a help proposes.
@@ -29,9 +31,41 @@ fn in_backticks(text: &str, max_chars: usize) -> String {
 
 fn cut(text: &str, max_chars: usize) -> String {
     match text.char_indices().nth(max_chars) {
-        Some((end, _)) => format!("{}…", &text[..end]),
-        None => text.to_owned(),
+        Some((end, _)) => format!("{}…", visible(&text[..end])),
+        None => visible(text).into_owned(),
     }
+}
+
+/// Tells whether a character does not show as one: a control character, one that turns the direction of the text around,
+/// one without width, or a blank other than the space.
+#[must_use]
+pub fn is_unseen(character: char) -> bool {
+    let is_blank = character.is_whitespace() && character != ' ';
+    character.is_control()
+        || is_blank
+        || matches!(
+            character,
+            // Characters that Unicode lets a program leave out when it shows text.
+            '\u{AD}' | '\u{34F}' | '\u{61C}' | '\u{115F}' | '\u{1160}' | '\u{17B4}' | '\u{17B5}' | '\u{180B}'..='\u{180F}'
+                | '\u{200B}'..='\u{200F}' | '\u{202A}'..='\u{202E}' | '\u{2060}'..='\u{206F}' | '\u{3164}'
+                | '\u{FE00}'..='\u{FE0F}' | '\u{FEFF}' | '\u{FFA0}' | '\u{FFF0}'..='\u{FFF8}'
+                | '\u{1BCA0}'..='\u{1BCA3}' | '\u{1D173}'..='\u{1D17A}' | '\u{E0000}'..='\u{E0FFF}'
+            // Marks of annotations, and a letter without any dot.
+                | '\u{FFF9}'..='\u{FFFB}' | '\u{2800}'
+        )
+}
+
+/// Returns a text in which characters that do not show are named, as `<U+200B>`.
+#[must_use]
+pub fn visible(text: &str) -> Cow<'_, str> {
+    if !text.contains(is_unseen) {
+        return text.into();
+    }
+    let shown = |character: char| match is_unseen(character) {
+        true => format!("<U+{:04X}>", u32::from(character)),
+        false => character.to_string(),
+    };
+    text.chars().map(shown).collect::<String>().into()
 }
 
 /// Returns the items as `a, b, c`.
@@ -77,6 +111,8 @@ mod tests {
     fn words() {
         assert_eq!(quoted("radius"), "`radius`");
         assert_eq!(quoted(&"é".repeat(41)), format!("`{}…`", "é".repeat(40)));
+        assert_eq!(quoted("a\u{202E}gnp.png\t"), "`a<U+202E>gnp.png<U+0009>`");
+        assert_eq!(visible("é ŝ 文 😀"), "é ŝ 文 😀");
         assert_eq!(named([]), "");
         assert_eq!(named(["x"]), "`x`");
         assert_eq!(named(["x", "y", "z"]), "`x`, `y` and `z`");

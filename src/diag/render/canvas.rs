@@ -6,6 +6,7 @@ use std::ops::Range;
 
 use unicode_width::UnicodeWidthChar;
 
+use crate::diag::words::is_unseen;
 use crate::source::{Source, Span};
 
 /// What stands for a part of a line that is not shown.
@@ -207,8 +208,11 @@ fn fitting(characters: impl Iterator<Item = char>, room: usize) -> (usize, usize
 
 /// Replaces what a terminal would obey and what ariadne, unlike us, takes for a line end; every byte keeps its place.
 fn harmless(text: &str) -> String {
-    let is_kept =
-        |character: char| matches!(character, '\n' | '\t') || !(character.is_control() || is_line_end(character));
+    let is_blank = |character: char| character.is_whitespace() && !character.is_control();
+    let is_kept = |character: char| {
+        let is_shown = !is_unseen(character) || is_blank(character);
+        matches!(character, '\n' | '\t') || (is_shown && !is_line_end(character))
+    };
     if text.chars().all(is_kept) {
         return text.to_owned();
     }
@@ -220,7 +224,8 @@ fn harmless(text: &str) -> String {
             _ if is_kept(character) || is_crlf => harmless.push(character),
             1 => harmless.push('?'),
             2 => harmless.push('¿'),
-            _ => harmless.push('\u{FFFD}'),
+            3 => harmless.push('\u{FFFD}'),
+            _ => harmless.push_str("\u{FFFD}?"),
         }
     }
     harmless

@@ -29,9 +29,11 @@ pub use short::render_short;
 
 use std::borrow::Cow;
 
-/// Replaces what a terminal would obey, as the name of a file may hold it, by question marks.
+use crate::diag::words::is_unseen;
+
+/// Replaces what a terminal would obey and what does not show, as the name of a file may hold it, by question marks.
 #[must_use]
 pub fn harmless(text: &str) -> Cow<'_, str> {
-    let is_obeyed = |character: char| character.is_control() && !matches!(character, '\n' | '\t');
-    if text.contains(is_obeyed) { text.replace(is_obeyed, "?").into() } else { text.into() }
+    let is_harmful = |character: char| is_unseen(character) && !matches!(character, '\n' | '\t');
+    if text.contains(is_harmful) { text.replace(is_harmful, "?").into() } else { text.into() }
 }
