@@ -116,8 +116,8 @@ fn what_cannot_be_measured_is_told() {
         (&["none.cli"][..], "`none.cli` has no `write`"),
         (&["gone.cli"], "cannot read `gone.cli`"),
         (&["a.cli", "--modes", "f16"], "invalid value 'f16'"),
-        (&["a.cli", "--samples", "0"], "0 is not in 1..=256"),
-        (&["a.cli", "--json", "no/where.json"], "cannot write `no/where.json`"),
+        (&["a.cli", "--samples", "0"], "a whole number from 1 to 256 is meant"),
+        (&["a.cli", "--json", "no/where.json"], "cannot save `no/where.json`"),
         (&["a.cli", "--svg", "a.cli/x"], "cannot make the folder `a.cli/x`"),
     ] {
         let call = bench(&folder, args);

@@ -103,6 +103,7 @@ fn a_read_only_folder_is_named_and_keeps_its_image() {
     let folder = Folder::with_scene(&scene("a.png"));
     open_to_all(&folder);
     folder.put("out/a.png", "old");
+    fs::set_permissions(folder.at("out/a.png"), fs::Permissions::from_mode(0o666)).unwrap();
     fs::set_permissions(folder.at("out"), fs::Permissions::from_mode(0o555)).unwrap();
     let call = clisc_without_privileges(&folder, &["run", "a.cli", "-o", "out", "--size", "4x4"]);
     assert_fails(&call, &["cannot create `out/a.png`", "Permission denied"]);
@@ -114,6 +115,61 @@ fn a_read_only_folder_is_named_and_keeps_its_image() {
     let call = clisc_without_privileges(&folder, &["run", "a.cli", "-o", "out", "--size", "4x4"]);
     assert_eq!(call.code, Some(0), "{}", call.stderr);
     assert_eq!(folder.image("out/a.png").width(), 4);
+}
+
+/// Whoever runs it: an administrator may write to any file, and did not mean to.
+#[test]
+fn a_read_only_image_is_left_as_it_is() {
+    let folder = Folder::with_scene(&format!("fov 60\nwrite new.png\nwrite {}", "a.png\n"));
+    folder.put("out/a.png", "old");
+    fs::set_permissions(folder.at("out/a.png"), fs::Permissions::from_mode(0o444)).unwrap();
+    for extra in [&[][..], &["--dry-run"]] {
+        let call = folder.clisc(&[&["run", "a.cli", "-o", "out", "--size", "4x4"], extra].concat());
+        assert_fails(&call, &["error[E0505]", "a.cli:3:7", "make `out/a.png` writable"]);
+        assert_eq!(folder.bytes("out/a.png"), b"old");
+        assert_eq!(folder.listing(), ["a.cli", "out/", "out/a.png"], "nothing is rendered");
+    }
+    folder.put("b.cli", scene("b.png"));
+    let call = folder.clisc(&["run", "b.cli", "-o", "out/a.png"]);
+    assert_fails(&call, &["error[E0505]", "make `out/a.png` writable"]);
+    for args in [
+        &["run", "b.cli", "--size", "4x4", "--certificate", "out/a.png"][..],
+        &["bench", "b.cli", "--size", "4x4", "--repeat", "1", "--json", "out/a.png"],
+    ] {
+        assert_fails(&folder.clisc(args), &["`out/a.png`", "read-only"]);
+        assert_eq!(folder.bytes("out/a.png"), b"old");
+    }
+}
+
+#[test]
+fn rights_and_attributes_of_an_image_stay() {
+    use rustix::fs::{XattrFlags, getxattr, setxattr};
+    let folder = Folder::with_scene(&scene("a.png"));
+    let image = folder.at("a.png");
+    let mode = || fs::metadata(&image).unwrap().permissions().mode() & 0o7777;
+    for rights in [0o600, 0o640, 0o666, 0o200] {
+        fs::write(&image, "old").unwrap();
+        fs::set_permissions(&image, fs::Permissions::from_mode(rights)).unwrap();
+        let has_attributes = setxattr(&image, "user.tag", b"mine", XattrFlags::empty()).is_ok();
+        assert_eq!(folder.clisc(&["run", "a.cli", "--size", "4x4"]).code, Some(0));
+        assert_eq!(mode(), rights);
+        let mut value = [0; 8];
+        match getxattr(&image, "user.tag", &mut value[..]) {
+            Ok(n_bytes) => assert_eq!(&value[..n_bytes], b"mine"),
+            Err(_) if !has_attributes => say_skipped("an attribute of a file"),
+            Err(error) => panic!("the attribute is lost: {error}"),
+        }
+        fs::set_permissions(&image, fs::Permissions::from_mode(0o600)).unwrap();
+        assert_eq!(folder.image("a.png").width(), 4);
+    }
+}
+
+#[test]
+fn what_is_no_regular_file_is_not_replaced() {
+    let folder = Folder::with_scene(&scene("pipe.png"));
+    assert!(Command::new("mkfifo").arg(folder.at("pipe.png")).status().unwrap().success());
+    assert_fails(&folder.clisc(&["run", "a.cli", "--size", "4x4"]), &["`pipe.png`", "it is no regular file"]);
+    assert_eq!(folder.listing(), ["a.cli", "pipe.png"]);
 }
 
 #[test]
@@ -250,7 +306,8 @@ fn knows_nameless_files(folder: &Folder) -> bool {
 #[test]
 fn an_interrupt_ends_the_other_scenes_too() {
     let folder = Folder::with_scene(&scene("a.png"));
-    let child = watched(&folder, &["run", "a.cli", "a.cli", "--size", BIG]).spawn().unwrap();
+    folder.put("b.cli", scene("b.png"));
+    let child = watched(&folder, &["run", "a.cli", "b.cli", "--size", BIG]).spawn().unwrap();
     let start = Instant::now();
     while !has_nameless_file(child.id()) && start.elapsed() < Duration::from_secs(5) {
         std::thread::sleep(Duration::from_millis(5));
@@ -259,7 +316,7 @@ fn an_interrupt_ends_the_other_scenes_too() {
     let call = end(child);
     assert_eq!(call.code, Some(130));
     assert_eq!(call.stderr.matches("interrupted").count(), 1, "{}", call.stderr);
-    assert_eq!(folder.listing(), ["a.cli"]);
+    assert_eq!(folder.listing(), ["a.cli", "b.cli"]);
 }
 
 #[test]

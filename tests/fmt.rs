@@ -158,7 +158,7 @@ mod unix {
         fs::set_permissions(folder.at("a.cli"), fs::Permissions::from_mode(0o444)).expect("set rights");
         let call = folder.clisc(&["fmt", "a.cli"]);
         assert_eq!(call.code, Some(2));
-        assert_eq!(call.stderr.lines().next(), Some("error: cannot save `a.cli`: permission denied"));
+        assert_eq!(call.stderr.lines().next(), Some("error: cannot save `a.cli`: it is read-only"));
         assert_eq!(folder.bytes("a.cli"), LOOSE.as_bytes());
         assert_eq!(folder.clisc(&["fmt", "--check", "a.cli"]).code, Some(1));
     }

@@ -128,9 +128,6 @@ fn an_unreadable_scene_is_an_environment_error_and_the_others_are_rendered() {
     assert_code(&call, 2);
     assert_says(&call.stderr, "error: cannot read `missing.cli`: No such file or directory");
     assert_eq!(folder.listing(), ["a.cli", "a.png", "bad.cli"]);
-    let call = folder.clisc(&["run", "."]);
-    assert_code(&call, 2);
-    assert_says(&call.stderr, "cannot read `.`: ");
 }
 
 #[test]
@@ -267,21 +264,208 @@ fn a_backend_can_be_chosen() {
 }
 
 #[test]
-fn two_scenes_of_one_file_are_warned_of() {
+fn two_scenes_of_one_file_are_refused_before_anything_is_rendered() {
     let folder = Folder::with_scene(&scene("x/same.png"));
     folder.put("b.cli", scene("./x//same.png"));
-    let call = folder.clisc(&["run", "a.cli", "b.cli", "--size", "4x4"]);
+    folder.put("sub/a.cli", scene("x/same.png"));
+    let before = folder.listing();
+    for extra in [&[][..], &["--dry-run"]] {
+        let call = folder.clisc(&[&["run", "a.cli", "b.cli", "--size", "4x4"], extra].concat());
+        assert_code(&call, 2);
+        assert_says(&call.stderr, "`a.cli` and `b.cli` both write `./x//same.png`");
+        assert_says(&call.stderr, "--out-dir 'out/{scene}'");
+        assert_eq!((call.stdout.as_str(), folder.listing()), ("", before.clone()));
+    }
+    // What is proposed does it.
+    let call = folder.clisc(&["run", ".", "--size", "4x4", "-o", "img"]);
+    assert_code(&call, 2);
+    assert_says(&call.stderr, "--out-dir 'img/{folder}/{scene}'");
+    assert_code(&folder.clisc(&["run", ".", "--size", "4x4", "--out-dir", "img/{folder}/{scene}"]), 0);
+    for image in ["img/a/x/same.png", "img/b/x/same.png", "img/sub/a/x/same.png"] {
+        assert_eq!(folder.image(image).width(), 4);
+    }
+    let call = folder.clisc(&["run", "a.cli", "a.cli", "./a.cli", "--size", "4x4"]);
+    assert_eq!((call.code, call.stdout.lines().count(), call.stderr.as_str()), (Some(0), 1, ""));
+}
+
+#[test]
+fn a_folder_means_every_scene_below_it() {
+    let folder = Folder::new();
+    folder.put("scenes/a.cli", scene("a.png"));
+    folder.put("scenes/deep/b.cli", scene("b.png"));
+    folder.put("scenes/deep/notes.txt", "x");
+    folder.put("c.cli", scene("c.png"));
+    let call = folder.clisc(&["run", "scenes", "c.cli", "--size", "4x4", "-o", "out"]);
     assert_code(&call, 0);
-    assert_says(&call.stderr, "warning: `a.cli` and `b.cli` both write");
-    let call = folder.clisc(&["run", "a.cli", "--size", "4x4"]);
-    assert_eq!(call.stderr, "");
+    let wrote: Vec<_> = call.stdout.lines().filter_map(|line| line.split(' ').nth(1)).collect();
+    assert_eq!(wrote, ["out/a.png", "out/b.png", "out/c.png"]);
+    fs::create_dir(folder.at("empty")).unwrap();
+    let call = folder.clisc(&["run", "empty"]);
+    assert_code(&call, 2);
+    assert_says(&call.stderr, "there is no .cli file below `empty`");
+}
+
+#[test]
+fn placeholders_that_stand_for_nothing_are_told_and_none_leads_out() {
+    let folder = Folder::new();
+    folder.put("out/x/...cli", scene("a.png"));
+    let call = folder.clisc(&["run", "out/x/...cli", "-o", "{sceen}"]);
+    assert_code(&call, 2);
+    assert_says(&call.stderr, "`{sceen}` in --out-dir stands for nothing");
+    assert_code(&folder.clisc(&["run", "out/x/...cli", "-o", "{folder}/y/{scene}", "--size", "4x4"]), 0);
+    assert_eq!(folder.image("out/x/y/...cli/a.png").width(), 4);
+    let other = Folder::new();
+    let absolute = folder.at("out/x/...cli").display().to_string();
+    assert_code(&other.clisc(&["run", &absolute, "-o", "new/{folder}", "--size", "4x4"]), 0);
+    assert!(other.listing()[0].starts_with("new/"), "{:?}", other.listing());
+}
+
+#[test]
+fn one_image_goes_to_a_file_or_to_standard_output() {
+    let folder = Folder::with_scene(&scene("a.png"));
+    folder.put("two.cli", scene("a.png") + "write b.png\n");
+    assert_code(&folder.clisc(&["run", "a.cli", "--size", "4x4"]), 0);
+    let expected = folder.bytes("a.png");
+    let call = folder.clisc(&["run", "a.cli", "-o", "new/first.png", "--size", "4x4"]);
+    assert_code(&call, 0);
+    assert_says(&call.stdout, "wrote new/first.png (4x4, ");
+    assert_eq!(folder.bytes("new/first.png"), expected);
+    let output = folder.command(&["run", "a.cli", "-o", "-", "--size", "4x4", "--stats"]).output().unwrap();
+    assert_eq!((output.status.code(), &output.stdout), (Some(0), &expected));
+    assert_says(&String::from_utf8_lossy(&output.stderr), "wrote <stdout> (4x4, ");
+    let call = folder.clisc(&["run", "a.cli", "-o", "{scene}-x.png", "--size", "4x4", "--dry-run"]);
+    assert_eq!(call.stdout, "would write a-x.png (4x4)\n");
+    for (out, shown) in [("-", "<stdout>"), ("x.png", "x.png")] {
+        let call = folder.clisc(&["run", "two.cli", "-o", out]);
+        assert_eq!((call.code, call.stdout.as_str()), (Some(2), ""));
+        assert_says(&call.stderr, &format!("`two.cli` has 2 images, and `{shown}` is one"));
+        assert_says(&call.stderr, "--out-dir out");
+        let call = folder.clisc(&["run", "two.cli", "a.cli", "-o", out]);
+        assert_eq!((call.code, call.stdout.as_str()), (Some(2), ""));
+        assert_says(&call.stderr, &format!("`two.cli` and `a.cli` both write `{shown}`"));
+    }
+    // A folder that is called as an image is a folder.
+    fs::create_dir(folder.at("dir.png")).unwrap();
+    assert_code(&folder.clisc(&["run", "a.cli", "-o", "dir.png", "--size", "4x4"]), 0);
+    assert_eq!(folder.bytes("dir.png/a.png"), expected);
+    folder.put("a.cli", scene("../a.png"));
+    assert_code(&folder.clisc(&["run", "a.cli", "-o", "x.png"]), 1);
+}
+
+/// One file says what counts, for every command.
+#[test]
+fn the_configuration_counts_as_for_check() {
+    let folder = Folder::new();
+    folder.put("sub/a.cli", scene("a.png").replace("fov 60\n", "") + "sphere 0 0 9 1\nwrite b.png\n");
+    let scene = "sub/a.cli";
+    let commands: [&[&str]; 4] = [
+        &["run", scene, "--size", "4x4"],
+        &["ir", scene],
+        &["bench", scene, "--size", "4x4", "--repeat", "1"],
+        &["check", scene],
+    ];
+    let calls = |config: &str| {
+        folder.put("clisc.toml", config);
+        commands.map(|args| folder.clisc(args))
+    };
+    for call in calls("") {
+        assert_code(&call, 0);
+        assert_says(&(call.stdout + &call.stderr), "warning[W0302]");
+    }
+    for call in calls("[lint.rules]\nno-fov = \"off\"\n") {
+        assert_code(&call, 0);
+        assert!(!(call.stdout + &call.stderr).contains("W0302"));
+    }
+    for rule in ["no-fov", "behind-eye"] {
+        for path in ["a.png", "b.png"] {
+            let _ = fs::remove_file(folder.at(path));
+        }
+        for call in calls(&format!("[lint.rules]\n{rule} = \"error\"\n")) {
+            assert_code(&call, 1);
+            assert_says(&(call.stdout + &call.stderr), if rule == "no-fov" { "error[W0302]" } else { "error[L0302]" });
+        }
+        assert!(!folder.at("a.png").exists());
+    }
+    for config in ["[lint.rules]\nno-fog = \"off\"\n", "[lint.rules]\nno-fov = \"off\"\nW0302 = \"error\"\n"] {
+        for call in calls(config).into_iter().chain([folder.clisc(&["fmt", scene]), folder.clisc(&["lint", scene])]) {
+            assert_code(&call, 2);
+            assert_says(&call.stderr, "clisc.toml`: line ");
+        }
+    }
+    let call = folder.clisc(commands[0]);
+    assert_says(&call.stderr, "line 3, column 1: `W0302` is \"error\", and `no-fov` in line 2 is \"off\"");
+}
+
+/// What is black or empty says why, in `run` by its pixels and in `check` by proof.
+#[test]
+fn an_image_that_shows_less_than_its_scene_says_why() {
+    let light = "fov 60\nlight 1 1 1 0 0 5\nsurface 0 0 0 .5 .5 .5 0 0 0 1 0\n";
+    let folder = Folder::new();
+    for (text, of_run, of_check) in [
+        (
+            "sphere 0 0 4 1\nwrite a.png\n",
+            "every pixel of `a.png` is black: this `sphere` lies behind the eye (a.cli:4:1)",
+            "`a.png` shows nothing but its background: this `sphere` lies behind the eye (a.cli:4:1)",
+        ),
+        (
+            "write a.png\nsphere 0 0 -4 1\n",
+            "every pixel of `a.png` is black: the objects stand behind its `write`",
+            "`a.png` shows nothing but its background: the objects",
+        ),
+        (
+            "background 1 0 0\nwrite a.png\n",
+            "every pixel of `a.png` has the colour #ff0000: the scene has no object",
+            "nothing but its background: the scene has no object",
+        ),
+        (
+            "sphere 0 0 -4 1\nsphere 0 0 9 1\nwrite a.png\n",
+            "an object cannot be seen in `a.png`: this `sphere` lies behind the eye (a.cli:5:1)",
+            "an object cannot be seen in `a.png`: this `sphere`",
+        ),
+        (
+            "sphere 0 0 -4 1\nsphere 0 0 9 1\nsphere 90 0 -1 1\nwrite a.png\n",
+            "2 objects cannot be seen in `a.png`, as this `sphere` lies",
+            "2 objects cannot be seen",
+        ),
+        (
+            "sphere 0 0 -4 1  # clisc: allow(behind-eye)\nsphere 0 0 9 1  # clisc: allow(behind-eye)\nwrite a.png\n",
+            "",
+            "",
+        ),
+    ] {
+        folder.put("a.cli", format!("{light}{text}"));
+        for (command, words) in [(&["run", "a.cli", "--size", "20x20"][..], of_run), (&["check", "a.cli"], of_check)] {
+            let call = folder.clisc(command);
+            assert_code(&call, 0);
+            let notes: Vec<_> = call.stderr.lines().filter(|line| line.starts_with("note: ")).collect();
+            assert_eq!(notes.len(), usize::from(!words.is_empty()), "{text}: {}", call.stderr);
+            assert_says(&call.stderr, words);
+        }
+        assert_eq!(folder.clisc(&["run", "a.cli", "--size", "20x20", "--quiet"]).stderr, "");
+    }
+    // Lights that light nothing.
+    for (text, words) in [
+        (
+            "fov 60\nsurface 0 0 0 .5 .5 .5 0 0 0 1 0\nsphere 0 0 -4 1\nwrite a.png\n",
+            "no `light`, though this `surface`",
+        ),
+        (
+            "fov 60\nlight 1 1 1 0 0 -4\nsurface 0 0 0 .5 .5 .5 0 0 0 1 0\nsphere 0 0 -4 1\nwrite a.png\n",
+            "this light stands inside a `sphere`",
+        ),
+    ] {
+        folder.put("a.cli", text);
+        let call = folder.clisc(&["run", "a.cli", "--size", "20x20"]);
+        assert_says(&call.stderr, "every pixel of `a.png` is black: ");
+        assert_says(&call.stderr, words);
+    }
 }
 
 #[test]
 fn usage_errors_explain_themselves() {
     let folder = Folder::with_scene(&scene("a.png"));
     for (args, words) in [
-        (&["run"][..], "<SCENE>"),
+        (&["run"][..], "<PATH>"),
         (&["run", "a.cli", "--size", "70000x2"], "the width 70000 is beyond the limit of 65535"),
         (&["run", "a.cli", "--size", "300"], "such as 300x200"),
         (&["run", "a.cli", "--size", "0x1"], "the width is 0"),
@@ -342,6 +526,7 @@ fn names_that_lead_out_are_refused_at_their_place() {
         ("../a.png", "E0502"),
         ("sub/../../a.png", "E0502"),
         ("sub\\..\\a.png", "E0502"),
+        ("t:30.png", "E0501"),
     ] {
         let folder = Folder::new();
         folder.put("scenes/a.cli", format!("fov 60\nwrite good.png\nwrite {name}\n"));
@@ -437,4 +622,39 @@ fn a_terminal_gets_colours_and_a_bar_for_what_takes_time() {
         let bad = on_a_terminal(&folder, "run bad.cli", no_color).unwrap();
         assert!(bad.contains("error[E0203]") && !bad.contains('\x1b'), "{bad}");
     }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn an_image_is_not_printed_on_a_terminal() {
+    let folder = Folder::with_scene(&scene("a.png"));
+    let Some(shown) = on_a_terminal(&folder, "run a.cli -o - --size 4x4", ("CLISC_TEST", "1")) else { return };
+    assert_says(&shown, "an image is nothing for a terminal");
+    assert!(!shown.contains("PNG"), "{shown}");
+}
+
+#[test]
+fn characters_that_do_not_show_are_no_part_of_a_name() {
+    for name in ["a\u{200B}.png", "\"a\u{202E}gnp.png\"", "\"a\u{FEFF}b.png\""] {
+        let folder = Folder::with_scene(&scene(name));
+        for command in ["run", "check", "lint"] {
+            for format in [&[][..], &["--format", "short"], &["--format", "github"]] {
+                if command == "run" && !format.is_empty() {
+                    continue;
+                }
+                let call = folder.clisc(&[&[command, "a.cli"], format].concat());
+                assert_code(&call, 1);
+                let said = call.stdout + &call.stderr;
+                assert_says(&said, "E0504");
+                assert_says(&said, "<U+");
+                assert!(!said.contains(['\u{200B}', '\u{202E}', '\u{FEFF}']), "{said}");
+            }
+        }
+        assert_eq!(folder.listing(), ["a.cli"]);
+    }
+    let folder = Folder::with_scene(&scene("t:30.png"));
+    let call = folder.clisc(&["run", "a.cli"]);
+    assert_says(&call.stderr, "the file name `t:30.png` starts with a drive of Windows");
+    assert_says(&call.stderr, "write `t-30.png`");
+    assert!(!call.stderr.contains("absolute"), "{}", call.stderr);
 }

@@ -20,6 +20,8 @@ pub(super) struct Earlier {
     files: Vec<File>,
     /// What stands behind the pixels of each image so far, and the arithmetic that gave them.
     proofs: Vec<(Precision, Option<Proof>)>,
+    /// The colour of all pixels of each image so far, if they have one.
+    colors: Vec<Option<[u8; 3]>>,
     /// The last image that was traced whole, or in part upon another.
     pixels: Option<(usize, Canvas)>,
 }
@@ -42,7 +44,7 @@ impl Earlier {
                 views.push(registers);
             }
         }
-        Self { views, files: Vec::new(), proofs: Vec::new(), pixels: None }
+        Self { views, files: Vec::new(), proofs: Vec::new(), colors: Vec::new(), pixels: None }
     }
 
     /// Returns how many bytes of the file of a `write` are worth keeping.
@@ -64,6 +66,16 @@ impl Earlier {
     /// Keeps what stands behind the pixels of the next `write`.
     pub fn keep_proof(&mut self, precision: Precision, proof: Option<Proof>) {
         self.proofs.push((precision, proof));
+    }
+
+    /// Keeps the colour of all pixels of the next `write`, if they have one.
+    pub fn keep_color(&mut self, color: Option<[u8; 3]>) {
+        self.colors.push(color);
+    }
+
+    /// Returns the colour of all pixels of an earlier `write`, if they have one.
+    pub fn color(&self, write_idx: usize) -> Option<[u8; 3]> {
+        self.colors[write_idx]
     }
 
     /// Returns the arithmetic that gave the pixels of an earlier `write`.

@@ -9,6 +9,7 @@
 //! Never here: files, the clock, threads of its own (it works in the current rayon pool).
 
 mod cancel;
+mod colors;
 mod earlier;
 mod exactly;
 mod in_order;

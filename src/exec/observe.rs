@@ -86,6 +86,8 @@ pub struct WriteReport {
     pub precision: Precision,
     /// Length of the file.
     pub n_bytes: u64,
+    /// The colour of all its pixels, if they have one.
+    pub color: Option<[u8; 3]>,
     /// Where its pixels come from.
     pub origin: Origin,
     /// What its plan leaves out before any ray is cast.

@@ -10,6 +10,7 @@ use std::time::Duration;
 
 use rayon::prelude::*;
 
+use crate::exec::colors::Colors;
 use crate::exec::in_order::in_order;
 use crate::exec::painter::Painter;
 use crate::exec::pieces::PieceSize;
@@ -37,6 +38,7 @@ struct Band {
     encoded: EncodedBand,
     /// The row behind it.
     end: u32,
+    colors: Colors,
     counts: Counts,
     trace_time: Duration,
     encode_time: Duration,
@@ -52,7 +54,7 @@ impl Write<'_> {
         let is_proved = self.options.settings.precision.is_proved();
         let file = Counted { inner: file, n_bytes: 0, crc32: is_proved.then(Crc32::default) };
         let png = PngWriter::new(file, &bands).map_err(|error| self.write_error(error))?;
-        let mut output = Output { write: self, png, report };
+        let mut output = Output { write: self, png, colors: Colors::None, report };
         if !painter.is_slow() && self.are_bands_for_one_thread(&bands) {
             self.render_bands(painter, &bands, &mut output)?;
         } else {
@@ -101,6 +103,7 @@ impl Write<'_> {
         band.end = rows.end;
         if let Some(color) = painter.uniform_rows(rows.clone()) {
             (band.counts, band.trace_time) = Default::default();
+            band.colors = Colors::One(color);
             ((), band.encode_time) = self.timed(|| bands.encode_uniform(band_idx, color, &mut band.encoded));
             return self.check_cancelled();
         }
@@ -108,6 +111,7 @@ impl Write<'_> {
         let is_cancelled = || self.is_cancelled();
         (band.counts, band.trace_time) = self.timed(|| painter.render_band(rows, pixels, &is_cancelled));
         self.check_cancelled()?;
+        band.colors = Colors::of(pixels);
         ((), band.encode_time) = self.timed(|| bands.encode(band_idx, pixels, &mut band.encoded));
         Ok(())
     }
@@ -170,6 +174,8 @@ impl Write<'_> {
 struct Output<'a, F> {
     write: &'a Write<'a>,
     png: PngWriter<Counted<F>>,
+    /// Those of the bands so far.
+    colors: Colors,
     report: &'a mut WriteReport,
 }
 
@@ -183,6 +189,7 @@ impl<F: io::Write> Output<'_, F> {
 
     /// Writes the next band and reports what it took.
     fn put_band(&mut self, band: &Band) -> Result<(), ExecError> {
+        self.colors = self.colors.and(band.colors);
         self.report.counts += band.counts;
         self.report.trace_time += band.trace_time;
         self.report.encode_time += band.encode_time;
@@ -207,11 +214,12 @@ impl<F: io::Write> Output<'_, F> {
             self.write.timed(|| {
                 let mut encoded = EncodedBand::default();
                 bands.encode(band_idx, rgb, &mut encoded);
-                encoded
+                (encoded, Colors::of(rgb))
             })
         };
         let whole = (n_bands..end).into_par_iter().zip(pixels.par_chunks(band_bytes));
-        for (encoded, time) in whole.map(encode).collect::<Vec<_>>() {
+        for ((encoded, colors), time) in whole.map(encode).collect::<Vec<_>>() {
+            self.colors = self.colors.and(colors);
             self.report.encode_time += time;
             self.put(&encoded)?;
         }
@@ -230,6 +238,7 @@ impl<F: io::Write> Output<'_, F> {
         let file = ended.map_err(|error| self.write.write_error(error))?;
         self.report.encode_time += time;
         self.report.n_bytes = file.n_bytes;
+        self.report.color = self.colors.one();
         self.report.crc32 = file.crc32.map(|crc32| crc32.value());
         Ok(file.inner)
     }

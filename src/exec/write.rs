@@ -67,6 +67,7 @@ impl Write<'_> {
         let mut report = self.new_report();
         let file = self.fill(view, earlier, file, &mut report)?;
         earlier.keep_proof(report.precision, report.proof.clone());
+        earlier.keep_color(report.color);
         let (saved, save_time) = self.timed(|| sink.commit(file));
         saved.map_err(|error| self.sink_error(error))?;
         report.save_time = save_time;
@@ -86,6 +87,7 @@ impl Write<'_> {
         if let Some((write_idx, bytes)) = earlier.same_scene(self.write_idx) {
             report.proof = earlier.proof(write_idx).cloned();
             report.precision = earlier.precision(write_idx);
+            report.color = earlier.color(write_idx);
             return self.copy(write_idx, bytes, file, report);
         }
         let settings = self.options.settings;
@@ -125,6 +127,7 @@ impl Write<'_> {
         if let Some((write_idx, bytes)) = earlier.same_image(&plan) {
             report.proof = earlier.proof(write_idx).cloned();
             report.precision = earlier.precision(write_idx);
+            report.color = earlier.color(write_idx);
             return Ok(Kept::new(self.copy(write_idx, bytes, file, report)?, 0));
         }
         let file = Kept::new(file, earlier.n_bytes_to_keep(self.write_idx));
@@ -190,6 +193,7 @@ impl Write<'_> {
             size: self.options.settings.size,
             precision: self.options.settings.precision,
             n_bytes: 0,
+            color: None,
             origin: Origin::Traced,
             savings: Savings::default(),
             spared: Spared::default(),

@@ -13,7 +13,8 @@
 use std::fmt;
 
 use serde::Deserialize;
-use serde::de::{DeserializeSeed, Deserializer, Error as _, MapAccess, Visitor};
+use serde::de::{Deserializer, Error as _, MapAccess, Visitor};
+use toml::Spanned;
 
 use crate::diag::Code;
 use crate::lint::options::{Level, Options, find_rule};
@@ -48,7 +49,7 @@ pub fn parse_config(text: &str) -> Result<Options, ConfigError> {
     let file = read(text)?;
     let mut options = Options::default();
     options.size = file.lint.size.0;
-    file.lint.rules.0.into_iter().for_each(|(rule, level)| options.set_level(rule, level));
+    file.lint.rules.0.iter().for_each(|entry| options.set_level(entry.rule.as_ref().0, entry.level));
     Ok(options)
 }
 
@@ -61,10 +62,22 @@ pub fn parse_exclude(text: &str) -> Result<Vec<String>, ConfigError> {
 }
 
 fn read(text: &str) -> Result<File, ConfigError> {
-    toml::from_str(text).map_err(|error| {
-        let position = error.span().map(|span| LineIndex::new(text).position(text, span.start as u32));
+    let position = |offset: usize| LineIndex::new(text).position(text, offset as u32);
+    let file: File = toml::from_str(text).map_err(|error| {
+        let position = error.span().map(|span| position(span.start));
         ConfigError { position, message: error.message().trim_end().replace('\n', "; ") }
-    })
+    })?;
+    if let Some([first, second]) = file.lint.rules.twice() {
+        let [first_name, second_name] = [first, second].map(|entry| text[entry.rule.span()].trim_matches(['"', '\'']));
+        let message = format!(
+            "`{second_name}` is \"{}\", and `{first_name}` in line {} is \"{}\": they are one rule; keep one of the two",
+            second.level.word(),
+            position(first.rule.span().start).line,
+            first.level.word()
+        );
+        return Err(ConfigError { position: Some(position(second.rule.span().start)), message });
+    }
+    Ok(file)
 }
 
 #[derive(Default, Deserialize)]
@@ -98,22 +111,31 @@ impl<'de> Deserialize<'de> for ImageSize {
 
 /// The levels of rules, by their names.
 #[derive(Default)]
-struct Rules(Vec<(&'static Code, Level)>);
+struct Rules(Vec<Entry>);
 
-/// The name of a rule that has no level yet: a rule has a name and a code, and may stand here by one of them.
-struct NewRule<'r>(&'r [(&'static Code, Level)]);
+/// The level of a rule, with the place of its name.
+struct Entry {
+    rule: Spanned<RuleName>,
+    level: Level,
+}
 
-impl<'de> DeserializeSeed<'de> for NewRule<'_> {
-    type Value = &'static Code;
+/// The name of a rule.
+struct RuleName(&'static Code);
 
-    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<&'static Code, D::Error> {
+impl Rules {
+    /// Returns the first two entries of one rule, by name and by code, say.
+    fn twice(&self) -> Option<[&Entry; 2]> {
+        let are_one = |a: &Entry, b: &Entry| a.rule.as_ref().0.id == b.rule.as_ref().0.id;
+        self.0.iter().enumerate().find_map(|(i, second)| {
+            self.0[..i].iter().find(|first| are_one(first, second)).map(|first| [first, second])
+        })
+    }
+}
+
+impl<'de> Deserialize<'de> for RuleName {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let name = String::deserialize(deserializer)?;
-        let rule = find_rule(&name).map_err(D::Error::custom)?;
-        if self.0.iter().any(|(known, _)| *known == rule) {
-            let message = format!("`{name}` is {}, which has a level by its other name too", rule.label());
-            return Err(D::Error::custom(message));
-        }
-        Ok(rule)
+        find_rule(&name).map(Self).map_err(D::Error::custom)
     }
 }
 
@@ -129,9 +151,11 @@ impl<'de> Deserialize<'de> for Rules {
 
             fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Rules, A::Error> {
                 let mut rules = Vec::new();
-                while let Some(rule) = map.next_key_seed(NewRule(&rules))? {
-                    rules.push((rule, map.next_value()?));
+                while let Some((rule, level)) = map.next_entry()? {
+                    rules.push(Entry { rule, level });
                 }
+                // A table comes in the order of its keys.
+                rules.sort_by_key(|entry| entry.rule.span().start);
                 Ok(Rules(rules))
             }
         }
@@ -169,11 +193,21 @@ mod tests {
             ("[lint.rules]\nE0203 = \"off\"\n", (2, 1), "E0203 is an error"),
             ("[lint.rules]\nno-fov = \"quiet\"\n", (2, 10), "unknown variant `quiet`"),
             (
-                "[lint.rules]\nno-fov = \"off\"\nW0302 = \"error\"\n",
-                (2, 1),
-                "`no-fov` is W0302 no-fov, which has a level",
+                "[lint.rules]\nno-fov = \"off\"\n\nW0302 = \"error\"\n",
+                (4, 1),
+                "`W0302` is \"error\", and `no-fov` in line 2 is",
             ),
-            ("[lint.rules]\nL0101 = \"off\"\nunused-surface = \"off\"\n", (3, 1), "is L0101 unused-surface"),
+            (
+                "[lint.rules]\nno-fov = \"off\"\n\"No-Fov\" = \"warning\"\n",
+                (3, 1),
+                "`No-Fov` is \"warning\", and `no-fov`",
+            ),
+            (
+                "[lint.rules]\nL0101 = \"off\"\nunused-surface = \"off\"\n",
+                (3, 1),
+                "`unused-surface` is \"off\", and `L0101`",
+            ),
+            ("[lint.rules]\nno-fov = \"off\"\nno-fov = \"off\"\n", (3, 1), "duplicate key"),
             ("[lint\n", (1, 6), ""),
         ] {
             let error = parse_config(text).expect_err(text);

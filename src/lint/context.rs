@@ -52,6 +52,16 @@ impl<'a> RuleContext<'a> {
         }
     }
 
+    /// Returns what the rules know of one image: that of a `write`, counted from 0, which shows `view`.
+    pub fn of_image(mut self, write_idx: usize, view: SceneView<'a>) -> Self {
+        let is_write = |(_, command): &(usize, &Command<'_>)| command.shape == Shape::Whole(CommandKind::Write);
+        let place = self.commands.iter().enumerate().filter(is_write).nth(write_idx).map(|(place, _)| place);
+        self.commands.truncate(place.map_or(self.commands.len(), |place| place + 1));
+        self.scene = Some(view);
+        self.images = vec![view];
+        self
+    }
+
     /// Tells whether a line that was meant to be such a command could not be read.
     pub fn has_bad(&self, kind: CommandKind) -> bool {
         self.commands.iter().any(|command| command.shape == Shape::Bad(Some(kind)))

@@ -15,11 +15,13 @@ mod options;
 mod registry;
 mod rules;
 mod sight;
+mod unseen;
 
 pub use config::{ConfigError, parse_config, parse_exclude};
 pub use fixer::{FixedScene, fix_all, safe_fixes};
 pub use options::{Level, Options, UnknownRule, find_rule};
 pub use registry::{RULES, Rule, all_codes, find, nearest};
+pub use unseen::{OneColor, Unseen, find_unseen};
 
 use crate::compile::{Compilation, compile_keeping};
 use crate::diag::{Diagnostic, Safety, codes};
@@ -30,10 +32,14 @@ use crate::lint::context::RuleContext;
 use crate::source::Source;
 use crate::syntax::parse;
 
-/// Compiles a scene and finds what the compiler finds, without what its comments and the options allow.
+/// Compiles a scene and finds what the compiler finds, and what a rule finds that the options call an error; without what
+/// its comments and the options allow.
 #[must_use]
 pub fn check(source: &Source, options: &Options) -> Compilation {
-    check_with(&mut Sieve::new(source, options))
+    let mut sieve = Sieve::new(source, options);
+    let mut compilation = check_with(&mut sieve);
+    check_errors(&mut sieve, options, &mut compilation);
+    compilation
 }
 
 fn check_with(sieve: &mut Sieve<'_>) -> Compilation {
@@ -43,7 +49,19 @@ fn check_with(sieve: &mut Sieve<'_>) -> Compilation {
     compilation
 }
 
-/// Leaves out of what the compiler has found what comments and options allow, and gives the rest its level.
+/// Runs the rules that the options call errors: a scene that has one is not accepted, whoever asks.
+fn check_errors(sieve: &mut Sieve<'_>, options: &Options, compilation: &mut Compilation) {
+    let is_error = |level| level == Level::Error;
+    if RULES.iter().any(|rule| is_error(options.level(&rule.code))) && !compilation.is_of_other_edition() {
+        let mut found = Vec::new();
+        check_rules(sieve.source, options, compilation.program.clone(), is_error, &mut found);
+        compilation.add(sieve.keep_all(found));
+        leave_to_people(compilation);
+    }
+}
+
+/// Makes of what the compiler has found what [`check`] would: without what comments and options allow, and with the rules
+/// that are errors.
 pub fn leave_out_allowed(source: &Source, options: &Options, compilation: &mut Compilation) {
     let mut sieve = Sieve::new(source, options);
     if compilation.diagnostics.len() < compilation.n_errors + compilation.n_warnings {
@@ -51,11 +69,12 @@ pub fn leave_out_allowed(source: &Source, options: &Options, compilation: &mut C
         let again = check_with(&mut sieve);
         (compilation.n_errors, compilation.n_warnings) = (again.n_errors, again.n_warnings);
         compilation.diagnostics = again.diagnostics;
-        return;
+    } else {
+        let found = std::mem::take(&mut compilation.diagnostics);
+        (compilation.n_errors, compilation.n_warnings) = (0, 0);
+        compilation.add(sieve.keep_all(found));
     }
-    let found = std::mem::take(&mut compilation.diagnostics);
-    (compilation.n_errors, compilation.n_warnings) = (0, 0);
-    compilation.add(sieve.keep_all(found));
+    check_errors(&mut sieve, options, compilation);
 }
 
 /// Compiles a scene and finds what the compiler and every rule find, without what its comments and the options allow. The
@@ -69,7 +88,8 @@ pub fn lint(source: &Source, options: &Options) -> Compilation {
         return compilation;
     }
     let mut found = Vec::new();
-    check_rules(source, options, std::mem::take(&mut compilation.program), &mut found);
+    let is_on = |level| level != Level::Off;
+    check_rules(source, options, std::mem::take(&mut compilation.program), is_on, &mut found);
     found = sieve.keep_all(found);
     found.extend(sieve.finish());
     compilation.add(found);
@@ -88,12 +108,18 @@ fn leave_to_people(compilation: &mut Compilation) {
     }
 }
 
-/// Runs the rules over a scene, as far as it could be compiled.
-fn check_rules(source: &Source, options: &Options, program: Program, acc: &mut Vec<Diagnostic>) {
+/// Runs the rules of some levels over a scene, as far as it could be compiled.
+fn check_rules(
+    source: &Source,
+    options: &Options,
+    program: Program,
+    is_wanted: impl Fn(Level) -> bool,
+    acc: &mut Vec<Diagnostic>,
+) {
     let parse = parse(source);
     let program = ir::validate(program).ok();
     let cx = RuleContext::new(source, options, &parse.file, program.as_ref());
-    for rule in RULES.iter().filter(|rule| options.level(&rule.code) != Level::Off) {
+    for rule in RULES.iter().filter(|rule| is_wanted(options.level(&rule.code))) {
         (rule.check)(&cx, acc);
     }
 }

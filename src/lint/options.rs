@@ -18,6 +18,18 @@ pub enum Level {
     Error,
 }
 
+impl Level {
+    /// Returns the word for it in a configuration.
+    #[must_use]
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Off => "off",
+            Self::Warning => "warning",
+            Self::Error => "error",
+        }
+    }
+}
+
 /// What the rules are asked for.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Options {

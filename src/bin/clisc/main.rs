@@ -11,6 +11,7 @@ mod input;
 mod interrupt;
 mod lsp;
 mod magic;
+mod notes;
 mod outcome;
 mod print;
 mod problems;
@@ -26,7 +27,7 @@ use crate::args::{Cli, Command};
 use crate::outcome::Outcome;
 
 fn main() -> ExitCode {
-    let ended = Cli::of_process().and_then(|cli| match cli {
+    let ended = Cli::of_process().map(|cli| match cli {
         Ok(cli) => {
             print::decide_color(cli.color);
             let code = run(&cli).unwrap_or_else(tell);
@@ -34,9 +35,9 @@ fn main() -> ExitCode {
             if !is_quiet {
                 print::explained_to_stderr();
             }
-            Ok(code)
+            code
         }
-        Err(outcome) => Ok(outcome.into()),
+        Err(outcome) => outcome.into(),
     });
     let code = ended.unwrap_or_else(tell);
     // Nobody has been told what is wrong.

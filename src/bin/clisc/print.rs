@@ -69,14 +69,14 @@ pub fn to_stdout(text: &str) -> anyhow::Result<()> {
 /// As [`to_stdout`].
 pub fn help_to_stdout(text: &StyledStr) -> anyhow::Result<()> {
     let mut stdout = stdout();
-    let text = if stdout_has_color() { text.ansi().to_string() } else { text.to_string() };
+    let text = if has_color(&io::stdout()) { text.ansi().to_string() } else { text.to_string() };
     stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()).context(CANNOT_WRITE)
 }
 
 /// Prints text of clap to standard error, with its own colours.
 pub fn usage_to_stderr(text: &StyledStr) {
     let mut stderr = stderr();
-    let text = if stderr_has_color() { text.ansi().to_string() } else { text.to_string() };
+    let text = if has_color(&io::stderr()) { text.ansi().to_string() } else { text.to_string() };
     let _ = stderr.write_all(text.as_bytes()).and_then(|()| stderr.flush());
 }
 

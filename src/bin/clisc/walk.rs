@@ -6,9 +6,9 @@
 
 use std::collections::HashMap;
 use std::ffi::OsStr;
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
+use std::{fs, io};
 
 use anyhow::Context;
 use clisc::diag::render::Notification;
@@ -111,7 +111,9 @@ fn shown(path: &Path) -> PathBuf {
 /// Says that a folder cannot be read.
 fn unreadable(error: &ignore::Error) -> Notification {
     let path = path_of(error).map(shown);
-    let why = error.io_error().map_or_else(|| error.to_string(), ToString::to_string);
+    // The system's error is wrapped in one that names the path again.
+    let cause = error.io_error().and_then(io::Error::get_ref).and_then(|wrapped| wrapped.source());
+    let why = cause.map_or_else(|| error.to_string(), ToString::to_string);
     let message = match &path {
         Some(path) => format!("cannot read the folder `{}`: {why}", path.display()),
         None => format!("cannot read a folder: {why}"),

@@ -13,13 +13,15 @@ use super::number::whole;
 #[derive(Args, Debug)]
 #[command(after_help = RUN_EXAMPLES)]
 pub struct RunArgs {
-    /// Scenes; - is standard input.
-    #[arg(value_name = "SCENE", required = true)]
+    /// Scenes; a folder means every .cli file below it, - is standard input.
+    #[arg(value_name = "PATH", required = true)]
     pub scenes: Vec<PathBuf>,
     /// What standard input is called.
     #[command(flatten)]
     pub stdin: StdinArgs,
-    /// The folder below which images are saved; made when missing.
+    /// The folder below which images are saved, made when missing; {scene} in it stands for the name of the scene without
+    /// its ending, {folder} for the folder of the scene, as given. A name that ends in .png is the file of the only image,
+    /// and - prints it.
     #[arg(short, long, value_name = "DIR", default_value = ".")]
     pub out_dir: PathBuf,
     /// What the images are.
@@ -52,7 +54,10 @@ pub(super) const MAX_THREADS: u32 = 1024;
 const RUN_EXAMPLES: &str = "\
 Examples:
   clisc run i1.cli                               300x300, saved in this folder
-  clisc run scenes/*.cli -o out --size 1920x1080
+  clisc run scenes -o out --size 1920x1080       every scene below a folder
+  clisc run scenes -o 'out/{folder}/{scene}'     each into a folder of its own
+  clisc run i1.cli -o first.png                  the only image of the scene, called so
+  clisc run i1.cli -o - | display                and as standard output
   clisc run i1.cli --samples 4 --sample-at centre
   clisc run i1.cli --stats=json --quiet          times and counts for other programs
   clisc run i1.cli --no-skip=shadows,tiles       the same image without two of the shortcuts

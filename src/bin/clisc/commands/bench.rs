@@ -18,6 +18,7 @@ use clisc::trace::kernels::Backend;
 use self::measure::Bench;
 use self::report::{Report, SceneReport};
 use crate::args::BenchArgs;
+use crate::config::Configs;
 use crate::interrupt::Interrupts;
 use crate::outcome::Outcome;
 use crate::{disk, input, print};
@@ -38,8 +39,9 @@ pub fn run(args: &BenchArgs) -> anyhow::Result<ExitCode> {
     }
     let mut report = Report::new(rayon::current_num_threads(), Backend::chosen(backend).name(), args.repeat);
     let mut outcome = Outcome::Fine;
+    let configs = Configs::default();
     for path in &args.scenes {
-        let Some(program) = compile(path)? else {
+        let Some(program) = compile(path, &configs)? else {
             outcome = outcome.max(Outcome::SceneErrors);
             continue;
         };
@@ -62,9 +64,9 @@ pub fn run(args: &BenchArgs) -> anyhow::Result<ExitCode> {
 }
 
 /// Compiles a scene and prints what was found; `None` when it has errors.
-fn compile(path: &Path) -> anyhow::Result<Option<Valid>> {
+fn compile(path: &Path, configs: &Configs) -> anyhow::Result<Option<Valid>> {
     let source = input::read(path)?;
-    let compilation = clisc::compile(&source);
+    let compilation = clisc::lint::check(&source, &configs.options_for(path)?);
     // There is no place left to say that this failed.
     let _ = print::diagnostics_to_stderr(&source, &compilation.diagnostics);
     print::unlisted_to_stderr(&source, &compilation);

@@ -1,5 +1,6 @@
 //! `clisc check`.
 
+use std::collections::HashSet;
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -7,8 +8,10 @@ use anyhow::Context;
 use clisc::Compilation;
 use clisc::diag::Severity;
 use clisc::diag::words::counted;
-use clisc::ir::Program;
+use clisc::ir::{self, Command, Program};
 use clisc::lint::safe_fixes;
+use clisc::lint::{Options, find_unseen};
+use clisc::plan::Settings;
 use clisc::source::Source;
 
 use crate::args::CheckArgs;
@@ -16,7 +19,7 @@ use crate::config::Configs;
 use crate::outcome::Outcome;
 use crate::problems::{self, Problems};
 use crate::walk::Found;
-use crate::{input, print};
+use crate::{input, notes, print};
 
 /// Checks scenes, on all cores and told of in the order given. What is wrong with them is the result and goes to standard
 /// output; a scene that cannot be read does not keep the others from being checked.
@@ -30,11 +33,12 @@ pub fn run(args: &CheckArgs) -> anyhow::Result<ExitCode> {
     let checked = |path: &Path| check(path, &configs);
     input::for_each_scene(&scenes, checked, |path, checked| {
         match checked {
-            Ok((source, compilation)) => {
+            Ok(Checked { source, compilation, notes }) => {
                 tally.add(&compilation);
                 let n_unlisted = [Severity::Error, Severity::Warning].map(|severity| compilation.n_unlisted(severity));
                 report.add(&source, &compilation.diagnostics, n_unlisted).context(print::CANNOT_WRITE)?;
                 print::unlisted_to_stderr(&source, &compilation);
+                notes.iter().for_each(|note| print::to_stderr(note));
             }
             Err(error) => tally.problems.tell(&problems::error(Some(path), &error), Some(&mut report))?,
         }
@@ -45,12 +49,42 @@ pub fn run(args: &CheckArgs) -> anyhow::Result<ExitCode> {
     Ok(tally.outcome(args.deny_warnings).into())
 }
 
-/// Checks one scene; its program is not kept.
-fn check(path: &Path, configs: &Configs) -> anyhow::Result<(Source, Compilation)> {
+/// A scene that has been checked.
+struct Checked {
+    source: Source,
+    /// Its program is not kept.
+    compilation: Compilation,
+    /// On images that are proved to show less than the scene declares.
+    notes: Vec<String>,
+}
+
+fn check(path: &Path, configs: &Configs) -> anyhow::Result<Checked> {
     let source = input::read(path)?;
-    let mut compilation = clisc::lint::check(&source, &configs.options_for(path)?);
-    compilation.program = Program::default();
-    Ok((source, compilation))
+    let options = configs.options_for(path)?;
+    let mut compilation = clisc::lint::check(&source, &options);
+    let program = std::mem::take(&mut compilation.program);
+    let notes = if compilation.has_errors() { Vec::new() } else { notes(&source, program, &options) };
+    Ok(Checked { source, compilation, notes })
+}
+
+/// Returns a note on each image that is proved to have one colour, and one on objects that are not seen.
+fn notes(source: &Source, program: Program, options: &Options) -> Vec<String> {
+    /// Each image is looked at by itself.
+    const MAX_IMAGES: usize = 16;
+    // The checks of the language leave nothing to find here.
+    let Ok(program) = ir::validate(program) else { return Vec::new() };
+    let settings = Settings { size: options.size, ..Settings::default() };
+    let names = program.commands.iter().filter_map(|command| match command {
+        Command::Write(name) => Some(&**name),
+        _ => None,
+    });
+    let mut known = HashSet::new();
+    let note = |(write_idx, name): (usize, &str)| {
+        let unseen = find_unseen(source, options, &program, write_idx, &settings);
+        let is_new = known.insert(unseen.objects.first().map(|found| found.primary.span));
+        if is_new || unseen.one_color.is_some() { notes::on_image(source, name, None, &unseen) } else { None }
+    };
+    names.take(MAX_IMAGES).enumerate().filter_map(note).collect()
 }
 
 /// What has been found so far.

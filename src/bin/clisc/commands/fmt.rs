@@ -11,6 +11,7 @@ use clisc::format::{changes, findings, format};
 use clisc::source::Source;
 
 use crate::args::FmtArgs;
+use crate::config::Configs;
 use crate::diff::Diff;
 use crate::outcome::Outcome;
 use crate::problems::{self, Problems};
@@ -25,7 +26,8 @@ pub fn run(args: &FmtArgs) -> anyhow::Result<ExitCode> {
     let Found { scenes, problems } = input::find_all_scenes(&args.paths);
     let mut report = args.format.map(print::report).transpose()?;
     problems.iter().try_for_each(|problem| tally.problems.tell(problem, report.as_mut()))?;
-    let formatted = |path: &Path| format_scene(path, args);
+    let configs = Configs::default();
+    let formatted = |path: &Path| format_scene(path, args, &configs);
     input::for_each_scene(&scenes, formatted, |path, result| {
         match result {
             Ok(scene) => {
@@ -59,8 +61,10 @@ struct Scene {
 }
 
 /// Formats a scene, and saves it unless it is only to be looked at.
-fn format_scene(path: &Path, args: &FmtArgs) -> anyhow::Result<Scene> {
+fn format_scene(path: &Path, args: &FmtArgs, configs: &Configs) -> anyhow::Result<Scene> {
     let source = input::read(path)?;
+    // It changes no format, but one that is wrong is told by every command.
+    configs.options_for(path)?;
     let formatted = format(&source);
     let has_changed = *formatted != *source.original_bytes();
     let is_saved = has_changed && !args.check && !args.diff && !input::is_stdin(path);

@@ -11,6 +11,7 @@ use clisc::source::Source;
 use clisc::syntax;
 
 use crate::args::{DumpFormat, Emit, IrArgs};
+use crate::config::Configs;
 use crate::outcome::Outcome;
 use crate::{input, print};
 
@@ -19,7 +20,7 @@ use crate::{input, print};
 pub fn run(args: &IrArgs) -> anyhow::Result<ExitCode> {
     input::name_stdin(&args.stdin, std::slice::from_ref(&args.scene))?;
     let source = input::read(&args.scene)?;
-    let compilation = clisc::compile(&source);
+    let compilation = clisc::lint::check(&source, &Configs::default().options_for(&args.scene)?);
     let has_errors = compilation.has_errors();
     // There is no place left to say that this failed.
     let _ = print::diagnostics_to_stderr(&source, &compilation.diagnostics);

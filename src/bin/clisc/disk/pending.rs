@@ -6,6 +6,8 @@ use std::path::Path;
 
 use tempfile::NamedTempFile;
 
+use super::attributes;
+
 /// A file being written. Dropped before [`PendingFile::save_as`], it leaves nothing behind.
 #[derive(Debug)]
 pub enum PendingFile {
@@ -52,8 +54,12 @@ impl PendingFile {
         }
     }
 
-    /// Gives the file the rights of another, and its owner as far as the system allows.
-    pub fn take_after(&self, other: &Metadata) -> io::Result<()> {
+    /// Gives the file the rights of the one at `path`, which is `other`, and its owner and attributes as far as the system
+    /// allows.
+    ///
+    /// # Errors
+    /// When it cannot have these rights.
+    pub fn take_after(&self, path: &Path, other: &Metadata) -> io::Result<()> {
         #[cfg(unix)]
         {
             use std::os::unix::fs::{MetadataExt, fchown};
@@ -63,7 +69,9 @@ impl PendingFile {
                 let _ = fchown(self.file(), Some(other.uid()), Some(other.gid()));
             }
         }
-        self.file().set_permissions(other.permissions())
+        self.file().set_permissions(other.permissions())?;
+        attributes::copy(path, self.file());
+        Ok(())
     }
 
     fn file(&self) -> &File {

@@ -10,7 +10,8 @@ use clisc::exec::{Proof, WriteReport};
 use clisc::plan::{Part, SampleAt, Settings};
 use serde::Serialize;
 
-use crate::{disk, input};
+use crate::disk::Place;
+use crate::input;
 
 /// The version of the document: a field may be added, none changes its meaning without a new version.
 const VERSION: u32 = 1;
@@ -111,13 +112,13 @@ impl Certificate {
     }
 
     /// Adds the images of a scene that were saved and have a proof.
-    pub fn add_writes(&mut self, scene: &Path, out_dir: &Path, reports: &[WriteReport]) {
+    pub fn add_writes(&mut self, scene: &Path, place: &Place, reports: &[WriteReport]) {
         for report in reports {
             if let (Some(proof), Some(crc32)) = (&report.proof, report.crc32) {
                 self.images.push(ImageCertificate {
                     scene: input::name_of(scene),
                     write: report.name.clone(),
-                    path: disk::shown(out_dir, &report.name).display().to_string(),
+                    path: place.shown(&report.name).display().to_string(),
                     width: report.size.width(),
                     height: report.size.height(),
                     bytes: report.n_bytes,

@@ -6,13 +6,15 @@ use std::time::Duration;
 use clisc::exec::{Event, Observer, WriteReport};
 
 use crate::args::{RunArgs, StatsFormat};
+use crate::disk::Place;
+use crate::print;
 use crate::progress::Progress;
-use crate::{disk, print};
 
 /// Watches the execution of one scene: shows its progress, prints a line for each image, keeps the reports.
 #[derive(Debug)]
 pub struct Reporter<'a> {
     args: &'a RunArgs,
+    place: &'a Place,
     progress: Progress,
     told: Mutex<Told>,
 }
@@ -26,9 +28,9 @@ struct Told {
 }
 
 impl<'a> Reporter<'a> {
-    /// Makes the reporter of one scene.
-    pub fn new(args: &'a RunArgs) -> Self {
-        Self { args, progress: Progress::new(!args.quiet), told: Mutex::default() }
+    /// Makes the reporter of one scene, whose images go to `place`.
+    pub fn new(args: &'a RunArgs, place: &'a Place) -> Self {
+        Self { args, place, progress: Progress::new(!args.quiet), told: Mutex::default() }
     }
 
     /// Prints a line of results, unless quiet or standard output is to be a JSON document.
@@ -37,7 +39,9 @@ impl<'a> Reporter<'a> {
             return;
         }
         let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
-        if told.failure.is_none() {
+        if *self.place == Place::Stdout {
+            print::to_stderr(line);
+        } else if told.failure.is_none() {
             told.failure = print::to_stdout(line).err();
         }
     }
@@ -57,7 +61,7 @@ impl Observer for Reporter<'_> {
     fn event(&self, event: &Event<'_>) {
         self.progress.event(event);
         if let Event::Finished(report) = event {
-            self.print(&saved_line(self.args, report));
+            self.print(&saved_line(self.place, report));
             self.told.lock().unwrap_or_else(PoisonError::into_inner).reports.push((*report).clone());
         }
     }
@@ -67,8 +71,8 @@ impl Observer for Reporter<'_> {
     }
 }
 
-fn saved_line(args: &RunArgs, report: &WriteReport) -> String {
-    let path = disk::shown(&args.out_dir, &report.name);
+fn saved_line(place: &Place, report: &WriteReport) -> String {
+    let path = place.shown(&report.name);
     let (width, height) = (report.size.width(), report.size.height());
     let (bytes, time) = (show_bytes(report.n_bytes), show_time(report.total_time));
     format!("wrote {} ({width}x{height}, {bytes}) in {time}\n", path.display())

@@ -10,8 +10,9 @@ use clisc::trace::kernels::Backend;
 use clisc::trace::{Counts, Spared};
 use serde::{Serialize, Serializer};
 
+use crate::disk::Place;
+use crate::input;
 use crate::outcome::Outcome;
-use crate::{disk, input};
 
 /// The version of the JSON document: a field may be added, none changes its meaning without a new version.
 const VERSION: u32 = 1;
@@ -130,7 +131,7 @@ impl SceneStats {
     }
 
     /// Adds what the images took.
-    pub fn add_writes(&mut self, out_dir: &Path, reports: &[WriteReport]) {
+    pub fn add_writes(&mut self, place: &Place, reports: &[WriteReport]) {
         for report in reports {
             self.trace += report.trace_time;
             self.encode += report.encode_time;
@@ -140,7 +141,7 @@ impl SceneStats {
             self.skipped.traced += report.spared;
             let (shares_with, traced_tiles) = shared(report.origin);
             self.images.push(ImageStats {
-                path: disk::shown(out_dir, &report.name).display().to_string(),
+                path: place.shown(&report.name).display().to_string(),
                 width: report.size.width(),
                 height: report.size.height(),
                 precision: report.precision.name(),
