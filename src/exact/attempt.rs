@@ -24,7 +24,30 @@ pub const WORK_OF_LIGHT: u64 = 512;
 #[derive(Clone, Copy, Debug)]
 pub struct Undecided;
 
-/// An answer, unless it takes more bits.
+/// How much work a pixel may take.
+#[derive(Clone, Copy)]
+pub struct Allowance<'a> {
+    /// The most work, in units of [`Pixel::work`].
+    pub max_work: u64,
+    /// Ends the work early: asked now and then, within a pixel too.
+    pub is_cancelled: &'a (dyn Fn() -> bool + Sync),
+}
+
+impl std::fmt::Debug for Allowance<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Allowance").field("max_work", &self.max_work).finish_non_exhaustive()
+    }
+}
+
+impl Allowance<'_> {
+    /// No limit.
+    pub const UNLIMITED: Allowance<'static> = Allowance { max_work: u64::MAX, is_cancelled: &|| false };
+}
+
+/// The work between two looks at whether it is cancelled: some milliseconds.
+const WORK_A_LOOK: u64 = 1 << 16;
+
+/// An answer, unless it takes more bits, or the work is not allowed.
 pub type Decided<T> = Result<T, Undecided>;
 
 /// The making of one pixel at one precision.
@@ -44,6 +67,11 @@ pub struct Attempt<'a> {
     algebra: RefCell<Algebra>,
     found: Cell<Found>,
     work: Cell<u64>,
+    /// What this attempt may take.
+    allowance: Allowance<'a>,
+    /// The work at which to look next whether it is cancelled.
+    next_look: Cell<u64>,
+    is_stopped: Cell<bool>,
 }
 
 /// The ties that were found so far.
@@ -56,7 +84,7 @@ struct Found {
 
 impl<'a> Attempt<'a> {
     /// Prepares the making of one pixel of `renderer`, in the arithmetic of `scene`.
-    pub fn new<'p: 'a>(renderer: &'a Renderer<'p>, scene: &'a Scene, is_last: bool) -> Self {
+    pub fn new<'p: 'a>(renderer: &'a Renderer<'p>, scene: &'a Scene, is_last: bool, allowance: Allowance<'a>) -> Self {
         Self {
             scene,
             bodies: renderer.bodies(),
@@ -68,6 +96,9 @@ impl<'a> Attempt<'a> {
             algebra: RefCell::new(Algebra::new(scene.kappa.clone())),
             found: Cell::default(),
             work: Cell::default(),
+            allowance,
+            next_look: Cell::new(WORK_A_LOOK),
+            is_stopped: Cell::new(false),
         }
     }
 
@@ -86,8 +117,29 @@ impl<'a> Attempt<'a> {
         self.work.get() + self.algebra.borrow().work()
     }
 
+    /// Tells whether the work was too much, or is cancelled: then nothing is decided any more.
+    pub fn is_stopped(&self) -> bool {
+        self.is_stopped.get()
+    }
+
+    /// Stops the attempt when the work is too much, or is cancelled.
+    pub fn check_work(&self) -> Decided<()> {
+        let work = self.work();
+        if work > self.allowance.max_work {
+            self.is_stopped.set(true);
+        } else if work >= self.next_look.get() {
+            self.next_look.set(work + WORK_A_LOOK);
+            self.is_stopped.set(self.is_stopped() || (self.allowance.is_cancelled)());
+        }
+        if self.is_stopped() { Err(Undecided) } else { Ok(()) }
+    }
+
     /// Decides the sign of a number.
+    ///
+    /// What stays open at the last precision is equal in all likelihood if its bound is narrow. If it is not, the path has lost
+    /// its precision among mirrors, and the number has the sign that was computed. Either is counted as open.
     pub fn sign(&self, value: &Real, tie: Tie) -> Decided<Ordering> {
+        self.check_work()?;
         if let Some(sign) = value.sign() {
             return Ok(self.noted(sign, tie, |found| &mut found.exact));
         }
@@ -95,7 +147,14 @@ impl<'a> Attempt<'a> {
         if let Some(sign) = expression.and_then(|expression| self.algebra.borrow_mut().sign(expression)) {
             return Ok(self.noted(sign, tie, |found| &mut found.algebraic));
         }
-        if self.is_last { Ok(self.noted(Ordering::Equal, tie, |found| &mut found.open)) } else { Err(Undecided) }
+        if !self.is_last {
+            return Err(Undecided);
+        }
+        let mut found = self.found.get();
+        found.open.count(tie);
+        self.found.set(found);
+        let is_vague = value.radius() > self.scene.vague;
+        Ok(if is_vague { value.to_f64().partial_cmp(&0.0).unwrap_or(Ordering::Less) } else { Ordering::Equal })
     }
 
     /// Counts a tie if there is one.
@@ -125,7 +184,7 @@ impl<'a> Attempt<'a> {
         for sample_row in 0..n {
             for sample_column in 0..n {
                 let ray = self.eye_ray(column, row, sample_column, sample_row);
-                sum = add(&sum, &self.radiance(&ray, 0)?);
+                sum = add(&sum, &self.radiance(ray)?);
             }
         }
         let average = if n == 1 { sum } else { divide(&sum, &self.number(f64::from(n) * f64::from(n))) };

@@ -74,6 +74,7 @@ impl Attempt<'_> {
         let mut closest: Option<Hit> = None;
         let mut t_max = f64::INFINITY;
         for (body_idx, &body) in self.bodies.iter().enumerate() {
+            self.check_work()?;
             if self.is_left_out(ray, body, t_max) {
                 continue;
             }
@@ -99,6 +100,7 @@ impl Attempt<'_> {
     pub fn is_occluded(&self, to_light: &Ray, light_idx: usize) -> Decided<bool> {
         let one = self.number(1.0);
         for (body_idx, &body) in self.bodies.iter().enumerate() {
+            self.check_work()?;
             if self.is_left_out(to_light, body, 1.0) {
                 continue;
             }

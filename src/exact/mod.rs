@@ -2,8 +2,9 @@
 //!
 //! It follows the semantics formula by formula in [ball arithmetic](ball), so each comparison is either proved or open. An
 //! open one makes the pixel again with twice the bits ([`LADDER`]); what is still open at the last precision is taken for a
-//! tie, counted, listed with its place, and settled by the rule that the semantics have for equality. There is no epsilon.
-//! Before that `algebra` is asked, which proves ties and near ties that are not too deep in mirrors.
+//! tie, counted, listed with its place, and settled by the rule that the semantics have for equality; if its bound is wide, it
+//! has the sign that was computed, and is counted and listed all the same. Before that `algebra` is asked, which proves ties
+//! and near ties that are not too deep in mirrors. No pixel is decided by an epsilon and said to be proved.
 //!
 //! One rule is narrower than its text, because the original image of scene i6 says so in pixel (0, 180): the far rim of a
 //! cylinder that a ray touches in passing, leaving the infinite wall as it comes down to the cap, is no hit.
@@ -27,6 +28,7 @@ mod shade;
 mod tie;
 mod vec3;
 
+pub use attempt::Allowance;
 pub use record::{Record, TiePlace};
 pub use settings::{Part, SampleAt, Settings};
 pub use tie::{Tie, Ties};
@@ -139,12 +141,21 @@ impl<'p> Renderer<'p> {
         Self { algebra_from: 0, ..Self::new(view, settings) }
     }
 
-    /// Renders one pixel.
+    /// Renders one pixel, however long it takes.
     ///
     /// # Panics
     /// When it lies outside the image.
     #[must_use]
     pub fn pixel(&self, column: u32, row: u32) -> Pixel {
+        self.pixel_within(column, row, Allowance::UNLIMITED).expect("nothing ends the work early")
+    }
+
+    /// Renders one pixel unless it takes more work than is allowed, or is cancelled.
+    ///
+    /// # Panics
+    /// As [`Renderer::pixel`].
+    #[must_use]
+    pub fn pixel_within(&self, column: u32, row: u32, allowance: Allowance<'_>) -> Option<Pixel> {
         assert!(column < self.settings.width && row < self.settings.height, "a pixel outside the image");
         let mut work = 0;
         for (i, &bits) in self.ladder.iter().enumerate() {
@@ -153,11 +164,15 @@ impl<'p> Renderer<'p> {
             let has_algebra = i >= self.algebra_from || is_last && self.algebra_from < usize::MAX;
             let arithmetic = Arithmetic { bits, has_algebra };
             let scene = self.scenes[i].get_or_init(|| Scene::new(&self.view, &self.settings, arithmetic));
-            let attempt = Attempt::new(self, scene, is_last);
+            let rest = Allowance { max_work: allowance.max_work - work, ..allowance };
+            let attempt = Attempt::new(self, scene, is_last, rest);
             let pixel = attempt.pixel(column, row);
+            if attempt.is_stopped() || attempt.work() > rest.max_work {
+                return None;
+            }
             work += attempt.work();
             if let Ok(pixel) = pixel {
-                return Pixel { work, ..pixel };
+                return Some(Pixel { work, ..pixel });
             }
         }
         unreachable!("the last precision leaves nothing open")
@@ -172,7 +187,7 @@ impl<'p> Renderer<'p> {
     }
 
     /// Renders `rows` into `rgb`, 3 bytes a pixel, row by row from the top, on all threads of the current rayon pool, until
-    /// `is_cancelled`, which is asked before each pixel, says so; what is then in `rgb` is no image.
+    /// `is_cancelled`, which is asked before each pixel and now and then within one, says so; what is then in `rgb` is no image.
     ///
     /// # Panics
     /// When `rgb` does not hold exactly the pixels of `rows`, or a row lies outside the image.
@@ -190,7 +205,8 @@ impl<'p> Renderer<'p> {
                 }
                 let place = first + piece_idx * PIXELS_A_PIECE + i;
                 let (column, row) = ((place % width) as u32, (place / width) as u32);
-                let pixel = self.pixel(column, row);
+                let allowance = Allowance { is_cancelled, ..Allowance::UNLIMITED };
+                let Some(pixel) = self.pixel_within(column, row, allowance) else { break };
                 rgb.copy_from_slice(&pixel.rgb);
                 record.add(column, row, &pixel);
             }

@@ -174,6 +174,21 @@ pub struct Scene {
     pub kappa: Kappa,
     pub background: Vec3,
     pub lights: Vec<Light>,
+    /// What cannot be told from 0 and has a larger bound need not be 0: see [`Attempt::sign`](crate::exact::attempt::Attempt::sign).
+    pub vague: f64,
+}
+
+/// What cannot be told from 0 with the last of the precisions has a bound of 2⁻³⁰⁰⁰ or so of what it was made from, if it is 0.
+/// Bounds that have grown to more than this share of the largest length, or of its fourth power as in a discriminant, have
+/// lost most of their digits among mirrors.
+const VAGUE_EXPONENT: i32 = -900;
+
+/// Returns the bound above which numbers are vague in a scene of this size.
+fn vague(view: &SceneView<'_>) -> f64 {
+    let spheres = view.spheres().iter().map(|s| s.center.abs().max_element().max(s.radius));
+    let walls = view.cylinders().iter().map(|c| c.x.abs().max(c.z.abs()).max(c.radius));
+    let largest = spheres.chain(walls).fold(1.0, f64::max);
+    libm::ldexp(1.0, VAGUE_EXPONENT + 4 * libm::ilogb(largest))
 }
 
 impl Scene {
@@ -193,6 +208,7 @@ impl Scene {
             kappa,
             background: color(view.background()),
             lights: lights.collect(),
+            vague: vague(view),
         }
     }
 }

@@ -21,21 +21,54 @@ struct Meeting<'r> {
     on: Vec<Equation>,
     p: Vec3,
     n: Vec3,
-    level: u32,
+}
+
+/// What a hit adds to the colour of its reflected ray, and how much of that it takes.
+struct Bounce {
+    local: Vec3,
+    reflectance: Real,
+}
+
+/// What lies at the end of a ray.
+enum End {
+    /// A colour, and nothing more to follow.
+    Color(Vec3),
+    /// A mirror, and the reflected ray.
+    Mirror(Bounce, Ray),
 }
 
 impl Attempt<'_> {
-    /// Returns the colour of a ray, clamped.
-    pub fn radiance(&self, ray: &Ray, level: u32) -> Decided<Vec3> {
-        let color = match self.intersect(ray)? {
-            None => self.scene.background.clone(),
-            Some(_) if level > self.settings.max_level => self.vec3([0.0; 3]),
-            Some(hit) => self.shade(ray, hit, level)?,
+    /// Returns the colour of an eye ray, clamped.
+    pub fn radiance(&self, eye_ray: Ray) -> Decided<Vec3> {
+        let mut bounces = Vec::new();
+        let mut ray = eye_ray;
+        let last = loop {
+            let level = bounces.len();
+            match self.follow(&ray, level as u32) {
+                Ok(End::Color(color)) => break color.map(|channel| channel.clamp01()),
+                Ok(End::Mirror(bounce, reflected)) => {
+                    bounces.push(bounce);
+                    ray = reflected;
+                }
+                Err(Undecided) if level == 0 => return Err(Undecided),
+                Err(Undecided) => break [0.0; 3].map(|_: f64| self.number(1.0).or_zero()),
+            }
         };
-        Ok(color.map(|channel| channel.clamp01()))
+        Ok(bounces.iter().rev().fold(last, |color, bounce| {
+            add(&bounce.local, &scale(&bounce.reflectance, &color)).map(|channel| channel.clamp01())
+        }))
     }
 
-    fn shade(&self, ray: &Ray, hit: Hit, level: u32) -> Decided<Vec3> {
+    /// Follows one ray to what it meets.
+    fn follow(&self, ray: &Ray, level: u32) -> Decided<End> {
+        match self.intersect(ray)? {
+            None => Ok(End::Color(self.scene.background.clone())),
+            Some(_) if level > self.settings.max_level => Ok(End::Color(self.vec3([0.0; 3]))),
+            Some(hit) => self.shade(ray, hit),
+        }
+    }
+
+    fn shade(&self, ray: &Ray, hit: Hit) -> Decided<End> {
         let body = self.bodies[hit.body_idx];
         let surface = Surface::new(&self.surfaces[body.surface_idx()], self.scene.arithmetic.forgetful());
         let mut p = ray.at(&hit.t);
@@ -53,10 +86,10 @@ impl Attempt<'_> {
             n = negate(&n);
         }
         match self.settings.part {
-            Part::A => self.shade_part_a(&surface, &p, &n),
+            Part::A => self.shade_part_a(&surface, &p, &n).map(End::Color),
             Part::B => {
                 let on = [&[hit.equation], &*hit.also].concat();
-                self.shade_part_b(&surface, &Meeting { ray, on, p, n, level })
+                self.shade_part_b(surface, &Meeting { ray, on, p, n })
             }
         }
     }
@@ -65,6 +98,7 @@ impl Attempt<'_> {
     fn shade_part_a(&self, surface: &Surface, p: &Vec3, n: &Vec3) -> Decided<Vec3> {
         let mut color = self.vec3([0.0; 3]);
         for light in &self.scene.lights {
+            self.check_work()?;
             let to_light = sub(&light.position, p);
             let square = dot(&to_light, &to_light);
             if self.sign(&square, Tie::AtLight)? == Ordering::Equal {
@@ -80,29 +114,26 @@ impl Attempt<'_> {
     }
 
     /// Part B: c = Ca + Σ Cl · (Cd · (n·L) + Cs · (n·H)^P) + Krefl · colour(reflected ray).
-    fn shade_part_b(&self, surface: &Surface, meeting: &Meeting<'_>) -> Decided<Vec3> {
-        let Meeting { ray, on, p, n, level } = meeting;
+    fn shade_part_b(&self, surface: Surface, meeting: &Meeting<'_>) -> Decided<End> {
+        let Meeting { ray, on, p, n } = meeting;
         let dir = forget(&ray.dir);
         let v = divide(&negate(&dir), &dot(&dir, &dir).sqrt());
         let mut color = surface.ambient.clone();
         for (light_idx, light) in self.scene.lights.iter().enumerate() {
+            self.check_work()?;
             let share = match self.is_lit(meeting, light_idx) {
                 Ok(false) => continue,
-                Ok(true) => self.share_of_light(surface, meeting, &v, light),
-                Err(Undecided) => self.share_of_light(surface, meeting, &v, light).map(|share| share.or_zero()),
+                Ok(true) => self.share_of_light(&surface, meeting, &v, light),
+                Err(Undecided) => self.share_of_light(&surface, meeting, &v, light).map(|share| share.or_zero()),
             };
             color = add(&color, &share);
         }
-        if surface.reflectance.sign() == Some(Ordering::Greater) {
-            let turned = scale(&dot(n, &ray.dir).double(), n);
-            let reflected = Ray::new(p.clone(), sub(&ray.dir, &turned), on.clone());
-            let radiance = match self.radiance(&reflected, level + 1) {
-                Ok(radiance) => radiance,
-                Err(Undecided) => [0.0; 3].map(|_: f64| self.number(1.0).or_zero()),
-            };
-            color = add(&color, &scale(&surface.reflectance, &radiance));
+        if surface.reflectance.sign() != Some(Ordering::Greater) {
+            return Ok(End::Color(color));
         }
-        Ok(color)
+        let turned = scale(&dot(n, &ray.dir).double(), n);
+        let reflected = Ray::new(p.clone(), sub(&ray.dir, &turned), on.clone());
+        Ok(End::Mirror(Bounce { local: color, reflectance: surface.reflectance }, reflected))
     }
 
     /// Tells whether a light counts at a hit.

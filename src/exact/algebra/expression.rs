@@ -1,9 +1,15 @@
 //! How a number was made, as far as algebra can follow.
 
+use std::mem;
 use std::sync::Arc;
 
 /// Roots may stand in roots this deep: the second surface on a path, and the shadows there.
 const MAX_DEPTH: u32 = 3;
+
+/// The most steps that may follow on each other. A path among flat mirrors takes about a dozen for each of its rays and no
+/// root, so that without this the numbers of a path of ten thousand would all be kept; to evaluate so many steps is beyond
+/// the work for one question.
+const MAX_STEPS: u32 = 4096;
 
 /// A number as it was made from those of the scene and from κ. Cheap to copy; parts are shared.
 #[derive(Clone, Debug)]
@@ -14,6 +20,22 @@ struct Node {
     made: Made,
     /// How deep roots stand in roots.
     depth: u32,
+    /// How many steps follow on each other.
+    n_steps: u32,
+}
+
+impl Drop for Node {
+    /// Drops parts one after the other: left to itself one would drop the next from within, as deep as there are steps.
+    fn drop(&mut self) {
+        let mut dropped = vec![mem::replace(&mut self.made, Made::Kappa)];
+        while let Some(made) = dropped.pop() {
+            for Expression(part) in made.into_parts().into_iter().flatten() {
+                if let Some(mut node) = Arc::into_inner(part) {
+                    dropped.push(mem::replace(&mut node.made, Made::Kappa));
+                }
+            }
+        }
+    }
 }
 
 /// One step of a computation.
@@ -28,17 +50,36 @@ pub enum Made {
     Root(Expression),
 }
 
+impl Made {
+    fn parts(&self) -> [Option<&Expression>; 2] {
+        match self {
+            Self::Number(_) | Self::Kappa => [None, None],
+            Self::Sum(a, b) | Self::Difference(a, b) | Self::Product(a, b) | Self::Quotient(a, b) => [Some(a), Some(b)],
+            Self::Root(a) => [Some(a), None],
+        }
+    }
+
+    fn into_parts(self) -> [Option<Expression>; 2] {
+        match self {
+            Self::Number(_) | Self::Kappa => [None, None],
+            Self::Sum(a, b) | Self::Difference(a, b) | Self::Product(a, b) | Self::Quotient(a, b) => [Some(a), Some(b)],
+            Self::Root(a) => [Some(a), None],
+        }
+    }
+}
+
 impl Expression {
     /// Makes an expression, unless it is beyond what algebra is for.
     pub fn new(made: Made) -> Option<Self> {
-        let depth = match &made {
-            Made::Number(_) | Made::Kappa => 0,
-            Made::Sum(a, b) | Made::Difference(a, b) | Made::Product(a, b) | Made::Quotient(a, b) => {
-                a.0.depth.max(b.0.depth)
-            }
-            Made::Root(a) => a.0.depth + 1,
-        };
-        (depth <= MAX_DEPTH).then(|| Self(Arc::new(Node { made, depth })))
+        let most = |of: fn(&Node) -> u32| made.parts().into_iter().flatten().map(|part| of(&part.0)).max().unwrap_or(0);
+        let depth = most(|node| node.depth) + u32::from(matches!(made, Made::Root(_)));
+        let n_steps = most(|node| node.n_steps) + 1;
+        (depth <= MAX_DEPTH && n_steps <= MAX_STEPS).then(|| Self(Arc::new(Node { made, depth, n_steps })))
+    }
+
+    /// Returns what the last step is made from.
+    pub fn parts(&self) -> [Option<&Self>; 2] {
+        self.made().parts()
     }
 
     /// Returns the last step.

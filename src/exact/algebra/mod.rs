@@ -98,36 +98,67 @@ impl Algebra {
     }
 
     /// Evaluates an expression; `None` when that is too much work, or it divides by 0 or takes the root of less.
+    ///
+    /// An expression is as deep as a path through mirrors is long, so what waits for its parts waits on a list of our own and
+    /// not on the stack of the thread.
     fn evaluate(&mut self, expression: &Expression) -> Option<Rc<Fraction>> {
-        if let Some((_, fraction)) = self.known.get(&expression.identity()) {
-            return Some(Rc::clone(fraction));
-        }
-        let fraction = match expression.made() {
-            Made::Number(value) => return Some(Rc::new(Fraction::whole(Element::number(*value)))),
-            Made::Kappa => return Some(Rc::new(Fraction::whole(self.field.kappa()))),
-            Made::Sum(a, b) => self.sum(a, b, false)?,
-            Made::Difference(a, b) => self.sum(a, b, true)?,
-            Made::Product(a, b) => {
-                let [a, b] = [self.evaluate(a)?, self.evaluate(b)?];
-                let numerator = self.field.product(&a.numerator, &b.numerator)?;
-                Fraction { numerator, denominator: product_of_powers(a.denominator.clone(), &b.denominator) }
+        let mut waiting = vec![expression.clone()];
+        while let Some(next) = waiting.last() {
+            let next = next.clone();
+            if let Some(part) = next.parts().into_iter().flatten().find(|part| !self.is_known(part)) {
+                waiting.push(part.clone());
+                continue;
             }
-            Made::Quotient(a, b) => self.quotient(a, b)?,
-            Made::Root(a) => self.root(a)?,
-        };
-        let fraction = Rc::new(fraction);
-        self.known.insert(expression.identity(), (expression.clone(), Rc::clone(&fraction)));
-        Some(fraction)
+            waiting.pop();
+            if !self.is_known(&next) {
+                let fraction = Rc::new(self.combine(next.made())?);
+                self.known.insert(next.identity(), (next, fraction));
+            }
+        }
+        self.look_up(expression)
     }
 
-    fn sum(&mut self, a: &Expression, b: &Expression, is_difference: bool) -> Option<Fraction> {
-        let [a, b] = [self.evaluate(a)?, self.evaluate(b)?];
+    /// Tells whether an expression need not be evaluated any more.
+    fn is_known(&self, expression: &Expression) -> bool {
+        match expression.made() {
+            Made::Number(_) | Made::Kappa => true,
+            _ => self.known.contains_key(&expression.identity()),
+        }
+    }
+
+    /// Returns what was evaluated before, or needs no evaluation.
+    fn look_up(&self, expression: &Expression) -> Option<Rc<Fraction>> {
+        match expression.made() {
+            Made::Number(value) => Some(Rc::new(Fraction::whole(Element::number(*value)))),
+            Made::Kappa => Some(Rc::new(Fraction::whole(self.field.kappa()))),
+            _ => self.known.get(&expression.identity()).map(|(_, fraction)| Rc::clone(fraction)),
+        }
+    }
+
+    /// Does the last step of a computation, of which the parts are known.
+    fn combine(&mut self, made: &Made) -> Option<Fraction> {
+        let both = |a, b| Some([self.look_up(a)?, self.look_up(b)?]);
+        match made {
+            Made::Number(_) | Made::Kappa => unreachable!("leaves are known"),
+            Made::Sum(a, b) => both(a, b).and_then(|[a, b]| self.sum(&a, &b, false)),
+            Made::Difference(a, b) => both(a, b).and_then(|[a, b]| self.sum(&a, &b, true)),
+            Made::Product(a, b) => {
+                let [a, b] = both(a, b)?;
+                let numerator = self.field.product(&a.numerator, &b.numerator)?;
+                Some(Fraction { numerator, denominator: product_of_powers(a.denominator.clone(), &b.denominator) })
+            }
+            Made::Quotient(a, b) => both(a, b).and_then(|[a, b]| self.quotient(&a, &b)),
+            Made::Root(a) => self.look_up(a).and_then(|a| self.root(&a)),
+        }
+    }
+
+    fn sum(&mut self, a: &Fraction, b: &Fraction, is_difference: bool) -> Option<Fraction> {
         let mut denominator = a.denominator.clone();
         for (&factor, &exponent) in &b.denominator {
             let common = denominator.entry(factor).or_default();
             *common = exponent.max(*common);
         }
-        let [a, b] = [self.numerator_over(&a, &denominator)?, self.numerator_over(&b, &denominator)?];
+        let [a, b] = [self.numerator_over(a, &denominator)?, self.numerator_over(b, &denominator)?];
         let numerator = if is_difference { a.plus(&b.negated()) } else { a.plus(&b) };
         Some(Fraction { numerator, denominator })
     }
@@ -145,8 +176,7 @@ impl Algebra {
     }
 
     /// (n/d) / (m/e) = n·e / (d·m), where factors that d and e share fall out.
-    fn quotient(&mut self, a: &Expression, b: &Expression) -> Option<Fraction> {
-        let [a, b] = [self.evaluate(a)?, self.evaluate(b)?];
+    fn quotient(&mut self, a: &Fraction, b: &Fraction) -> Option<Fraction> {
         let mut numerator = a.numerator.clone();
         let mut denominator = a.denominator.clone();
         for (factor, &exponent) in &b.denominator {
@@ -173,8 +203,8 @@ impl Algebra {
     }
 
     /// √(n / Π fᵉ) = √(n·Π f) / Π f^⌈e/2⌉, with the product on the right over the factors of odd exponent.
-    fn root(&mut self, a: &Expression) -> Option<Fraction> {
-        let Fraction { numerator: mut radicand, mut denominator } = Fraction::clone(&*self.evaluate(a)?);
+    fn root(&mut self, a: &Fraction) -> Option<Fraction> {
+        let Fraction { numerator: mut radicand, mut denominator } = a.clone();
         match self.field.sign(&radicand)? {
             Ordering::Less => return None,
             Ordering::Equal => return Some(Fraction::whole(Element::number(0.0))),
