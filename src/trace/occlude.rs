@@ -67,7 +67,11 @@ fn sphere_occludes<R: Real>(
         Ordering::Equal => Ok(judge.is_positive(power())? && judge.is_positive(rise_at_light())?),
         Ordering::Greater => {
             let to_center = center - ray.origin;
-            let cross_squared = to_center.cross(ray.dir).length_squared();
+            // The line goes through both ends: from the nearer one its distance from the centre cancels less.
+            let from_light = center - Vector::exact(light);
+            let is_near_light = from_light.length_squared().value() < to_center.length_squared().value();
+            let arm = if is_near_light { from_light } else { to_center };
+            let cross_squared = arm.cross(ray.dir).length_squared();
             let discriminant = ray.dir.length_squared() * R::exact(radius).square() - cross_squared;
             let rise_at_light = rise_at_light();
             // Either says that nothing is met, wherever the ray starts.
