@@ -147,3 +147,22 @@ fn too_much_work_ends_without_an_answer() {
     let deep = (0..9).fold(k, |x, _| (&x + &b).sqrt());
     assert!(deep.expression().is_none());
 }
+
+#[test]
+fn long_expressions_need_no_stack() {
+    let ask = || {
+        let [mut number, part] = [0.0, 0.1].map(|value| Arithmetic { bits: 60, has_algebra: true }.number(value));
+        let mut n_steps = 0;
+        while number.expression().is_some() {
+            number = &(&number + &part) - &part;
+            n_steps += 2;
+        }
+        let [mut known, part] = [0.0, 0.1].map(|value| Arithmetic { bits: 60, has_algebra: true }.number(value));
+        (0..n_steps / 2 - 2).for_each(|_| known = &(&known + &part) - &part);
+        let expression = known.expression().expect("not too long");
+        (n_steps, Algebra::new(Kappa::One).sign(expression))
+    };
+    let thread = std::thread::Builder::new().stack_size(96 << 10).spawn(ask).expect("a thread");
+    let (n_steps, sign) = thread.join().expect("it fits the stack");
+    assert!(n_steps > 4000 && sign == Some(Ordering::Equal), "{n_steps} {sign:?}");
+}
