@@ -9,11 +9,9 @@ mod support;
 
 use std::fs;
 use std::path::Path;
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::Duration;
 
-use clisc::exact::{Pixel, Record, Renderer, Tie, TiePlace};
-use clisc::exec::{CancellationToken, Event, MemorySink, Observer, Options, WriteReport, exact_settings, execute};
+use clisc::exact::{Allowance, Pixel, Record, Renderer, Tie, TiePlace};
+use clisc::exec::{CancellationToken, MemorySink, Options, Origin, WriteReport, exact_settings, execute};
 use clisc::image::{RgbImage, decode_png};
 use clisc::ir::{SceneView, Valid};
 use clisc::plan::{ExactWork, Pass, Passes, Precision, Settings, Size, plan};
@@ -177,61 +175,143 @@ fn shared_pixels_are_counted_and_their_ties_are_listed() {
 const SPECK: &str = "light 1 1 1 0 0 5e-150\nsurface .1 .1 .1 .5 .5 .5 0 0 0 1 0\nsphere 0 0 -4e-150 1e-150\n\
                      surface .1 0 0 .9 0 0 0 0 0 1 .5\nsphere 0 0 -4e150 3.9e150\n";
 
-/// Checks that exact work reaches its limit in the first `write` of a program and in those that share pixels with it, on any
-/// number of threads, and that their images are then those of binary64 altogether.
-fn assert_is_beyond_the_limit(text: &str, settings: &Settings) {
-    let program = compile(text);
-    let plain = run(&program, &Settings { precision: Precision::F64, ..settings.clone() });
-    for n_threads in [1, 3] {
+/// Executes a program in pools of several sizes, checks that no byte and no finding depends on that, and returns the reports
+/// with their images.
+fn run_on_any_threads(program: &Valid, settings: &Settings) -> Vec<(WriteReport, RgbImage)> {
+    let [one, three] = [1, 3].map(|n_threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(n_threads).build().expect("threads");
-        let limited = pool.install(|| run(&program, settings));
-        for ((report, image), (plain_report, plain_image)) in limited.iter().zip(&plain) {
-            assert_eq!((report.precision, &report.proof, report.crc32), (Precision::F64, &None, None));
-            assert_eq!(report.n_bytes, plain_report.n_bytes);
-            assert!(image == plain_image, "{n_threads} threads: {}", report.name);
-        }
+        pool.install(|| run(program, settings))
+    });
+    for ((report, image), (other, other_image)) in one.iter().zip(&three) {
+        assert!(image == other_image, "{}", report.name);
+        let findings = |report: &WriteReport| (report.proof.clone(), report.unproved.clone(), report.crc32);
+        assert_eq!(findings(report), findings(other), "{}", report.name);
+        let sums = |report: &WriteReport| {
+            let counts = report.counts;
+            (counts.exact_pixels, counts.unproved_pixels, counts.ties, counts.refined_pixels)
+        };
+        assert_eq!(sums(report), sums(other), "{}", report.name);
     }
+    one
+}
+
+fn limited(width: u32, height: u32) -> Settings {
+    Settings { exact_work: ExactWork::Limited, ..sized(width, height) }
+}
+
+fn in_f64(settings: &Settings) -> Settings {
+    Settings { precision: Precision::F64, ..settings.clone() }
+}
+
+/// Checks that the pixels of a proof add up to the image, and returns how many are beyond the limit.
+fn n_beyond_limit(report: &WriteReport) -> u64 {
+    let proof = report.proof.as_ref().expect("every image has one");
+    let all = [proof.n_binary64, proof.n_double_double, proof.exact.n_pixels(), proof.n_beyond_limit, proof.n_shared];
+    assert_eq!(all.into_iter().sum::<u64>(), report.n_pixels());
+    assert_eq!(report.unproved.n_pixels, proof.n_beyond_limit);
+    assert!(report.unproved.listed.is_sorted());
+    proof.n_beyond_limit
 }
 
 #[test]
-fn an_image_that_takes_too_much_exact_work_is_made_in_binary64_altogether() {
-    let limited = |width, height| Settings { exact_work: ExactWork::Limited, ..sized(width, height) };
-    // So many pixels that it is known beforehand.
-    assert_is_beyond_the_limit(
-        &format!("{SPECK}write a.png\nwrite b.png\nsphere 0 0 9 1\nwrite c.png\n"),
-        &limited(540, 540),
-    );
-    // So much work that it is seen on the way.
-    assert_is_beyond_the_limit(&format!("{SPECK}write a.png\n"), &limited(280, 280));
-    // So little that nothing happens.
+fn an_image_beyond_the_limit_keeps_what_is_proved() {
+    let program = compile(&format!("{SPECK}write a.png\nwrite b.png\nsphere 0 0 9 1\nwrite c.png\n"));
+    let images = run_on_any_threads(&program, &limited(200, 200));
+    let renderer = Renderer::new(last_view(&program), &exact_settings(&limited(200, 200)));
+    for (report, image) in &images {
+        let (proof, n_beyond) = (report.proof.as_ref().expect("a proof"), n_beyond_limit(report));
+        assert!(n_beyond > 0 && proof.exact.n_pixels() > 0 && !proof.is_complete(), "{report:?}");
+        assert_eq!((report.n_unproved(), report.precision), (n_beyond, Precision::Certified));
+        // The work is spent from the top.
+        let first = report.unproved.listed[0];
+        assert_eq!(u64::from(first.row) * 200 + u64::from(first.column), 40_000 - n_beyond);
+        for place in report.unproved.listed.iter().step_by(499) {
+            let exact = renderer.pixel(place.column, place.row).rgb;
+            assert_eq!(image.pixel(place.column, place.row), exact, "{place:?} has its best value");
+        }
+    }
+    // So little that everything is proved.
     let (report, _) = run(&compile(&format!("{SPECK}write a.png\n")), &limited(16, 12)).pop().expect("an image");
-    assert!(report.precision == Precision::Certified && report.proof.is_some_and(|proof| proof.is_complete()));
+    assert!(n_beyond_limit(&report) == 0 && report.proof.is_some_and(|proof| proof.is_complete()));
 }
 
-/// Its clock tells how often an image was started, in seconds.
-#[derive(Default)]
-struct Starts(AtomicU64);
+/// A ball in a mirrored ball: bounds grow a thousandfold with each bounce, what is computed does not go wrong.
+const MIRROR_DEPTH: &str = "fov 60\nlight 1 1 1 0 0 -1\nsurface .01 0 0 .001 .001 .001 0 0 0 1 1\n\
+                            sphere 0 0 0 10\nsphere 0 0 -5 1\nwrite a.png\n";
 
-impl Observer for Starts {
-    fn now(&self) -> Duration {
-        Duration::from_secs(self.0.load(Ordering::Relaxed))
-    }
+#[test]
+fn what_bounds_leave_open_has_the_sign_that_was_computed() {
+    let program = compile(MIRROR_DEPTH);
+    let settings = Settings { max_level: 50, ..sized(12, 12) };
+    let exact: Vec<_> = exact_pixels(last_view(&program), &settings).iter().map(|pixel| pixel.rgb).collect();
+    let (plain_report, plain) = run_on_any_threads(&program, &in_f64(&settings)).pop().expect("an image");
+    assert!(plain.rgb().as_chunks().0 == exact, "not one is wrong");
+    assert!(plain_report.n_unproved() > 100 && plain_report.proof.is_none(), "{plain_report:?}");
+    let bare = Settings { passes: Passes::none(), ..in_f64(&settings) };
+    assert!(run(&program, &bare)[0].1 == plain);
+}
 
-    fn event(&self, event: &Event<'_>) {
-        if let Event::Started { .. } = event {
-            self.0.fetch_add(1, Ordering::Relaxed);
-        }
+#[test]
+fn lights_that_cancel_leave_what_is_dark() {
+    let program = compile(
+        "fov 60\nlight 1e100 1e100 1e100 0 5 0\nlight -1e100 -1e100 -1e100 0 5 0\n\
+         surface .1 .1 .1 1 1 1 0 0 0 0 0\nsphere 0 0 -4 1\nwrite a.png\n",
+    );
+    for settings in [limited(100, 100), in_f64(&sized(100, 100))] {
+        let (_, image) = run(&program, &settings).pop().expect("an image");
+        assert_eq!(image.pixel(50, 40), [25; 3]);
     }
 }
 
 #[test]
-fn an_attempt_that_takes_too_much_exact_work_is_part_of_the_time() {
-    let settings = Settings { exact_work: ExactWork::Limited, ..sized(540, 540) };
-    let (observer, cancellation) = (Starts::default(), CancellationToken::new());
-    let options = Options { settings: &settings, observer: &observer, cancellation: &cancellation };
-    let program = compile(&format!("{SPECK}write a.png\n"));
-    let report = execute(&program, options, &mut MemorySink::default()).expect("memory takes every image").remove(0);
-    assert_eq!((report.precision, report.total_time), (Precision::F64, Duration::from_secs(2)));
+fn no_pixel_in_f64_depends_on_passes_proved_or_not() {
+    let mut n_unproved = 0;
+    for family in FAMILIES.iter().chain(FINEST) {
+        let program = compile(&family.sketch(2).text());
+        let [skipped, bare] = [Passes::all(), Passes::none()]
+            .map(|passes| run(&program, &Settings { passes, ..in_f64(&sized(40, 30)) }).pop().expect("an image"));
+        assert!(skipped.1 == bare.1, "{}", family.name);
+        n_unproved += skipped.0.n_unproved();
+    }
+    assert!(n_unproved > 0);
+}
+
+#[test]
+fn images_share_no_pixels_that_are_not_proved() {
+    let text = MIRROR_DEPTH.replace("write a.png\n", "write a.png\nsphere 0 30 0 .1\nwrite b.png\nwrite c.png\n");
+    let settings = Settings { max_level: 50, ..in_f64(&sized(12, 12)) };
+    let images = run(&compile(&text), &settings);
+    let origins: Vec<_> = images.iter().map(|(report, _)| report.origin).collect();
+    assert_eq!(origins, [Origin::Traced, Origin::Traced, Origin::CopiedFrom { write_idx: 1 }]);
+    let unproved: Vec<_> = images.iter().map(|(report, _)| report.n_unproved()).collect();
+    assert!(unproved[0] > 0 && unproved[1] == unproved[2], "{unproved:?}");
+}
+
+#[test]
+fn the_limit_holds_within_a_pixel() {
+    // The eye on a mirrored ball of such a size that every bit is tried in each pixel: 64x64 took half a minute.
+    let program = compile(
+        "fov 60\nlight 1 1 1 0 2 -5\nsurface 0 0 0 .5 .5 .5 0 0 0 1 .4\nsphere 0 0 -1e300 1e300\nwrite a.png\n",
+    );
+    let (report, _) = run_on_any_threads(&program, &limited(64, 64)).pop().expect("an image");
+    let work = report.proof.as_ref().expect("a proof").exact.work;
+    assert!(work <= 1 << 25, "{work}");
+    n_beyond_limit(&report);
+}
+
+#[test]
+fn a_path_may_be_as_long_as_is_asked_for() {
+    // A hall of flat and round mirrors about the eye: expressions of algebra grew with each bounce, and so did the stack.
+    let program = compile(
+        "fov 60\nlight .5 .5 .5 0 0 -1\nsurface 0 0 0 .01 .01 .01 0 0 0 1 1\ncylinder 1e6 0 0 -1 1\nwrite a.png\n",
+    );
+    let settings = Settings { max_level: 2000, ..limited(6, 6) };
+    let (report, _) = run_on_any_threads(&program, &settings).pop().expect("an image");
+    n_beyond_limit(&report);
+    let renderer = Renderer::for_open_pixels(last_view(&program), &exact_settings(&settings));
+    let allowance = Allowance { max_work: 1 << 22, is_cancelled: &|| false };
+    let _ = renderer.pixel_within(3, 2, allowance);
+    assert_eq!(renderer.pixel_within(3, 2, Allowance { is_cancelled: &|| true, ..allowance }), None);
 }
 
 #[test]

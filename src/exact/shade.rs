@@ -34,7 +34,7 @@ enum End {
     /// A colour, and nothing more to follow.
     Color(Vec3),
     /// A mirror, and the reflected ray.
-    Mirror(Bounce, Ray),
+    Mirror(Bounce, Box<Ray>),
 }
 
 impl Attempt<'_> {
@@ -48,7 +48,7 @@ impl Attempt<'_> {
                 Ok(End::Color(color)) => break color.map(|channel| channel.clamp01()),
                 Ok(End::Mirror(bounce, reflected)) => {
                     bounces.push(bounce);
-                    ray = reflected;
+                    ray = *reflected;
                 }
                 Err(Undecided) if level == 0 => return Err(Undecided),
                 Err(Undecided) => break [0.0; 3].map(|_: f64| self.number(1.0).or_zero()),
@@ -133,7 +133,7 @@ impl Attempt<'_> {
         }
         let turned = scale(&dot(n, &ray.dir).double(), n);
         let reflected = Ray::new(p.clone(), sub(&ray.dir, &turned), on.clone());
-        Ok(End::Mirror(Bounce { local: color, reflectance: surface.reflectance }, reflected))
+        Ok(End::Mirror(Bounce { local: color, reflectance: surface.reflectance }, Box::new(reflected)))
     }
 
     /// Tells whether a light counts at a hit.

@@ -4,7 +4,7 @@
 //! shares pixels with the last one traced gets them from there. Both are kept only where a later `write` has the same field
 //! of view and background, and only within [`MAX_BYTES`] each.
 
-use crate::exec::Proof;
+use crate::exec::{Proof, Unproved};
 use crate::ir::{Command, Registers, Valid};
 use crate::plan::{Changes, Pass, Plan, Precision, Settings, TileMask};
 use crate::trace::Canvas;
@@ -18,8 +18,8 @@ pub(super) struct Earlier {
     /// What each `write` of the program sees.
     views: Vec<Registers>,
     files: Vec<File>,
-    /// What stands behind the pixels of each image so far, and the arithmetic that gave them.
-    proofs: Vec<(Precision, Option<Proof>)>,
+    /// What stands behind the pixels of each image so far, and which of them are not proved.
+    proofs: Vec<(Option<Proof>, Unproved)>,
     /// The colour of all pixels of each image so far, if they have one.
     colors: Vec<Option<[u8; 3]>>,
     /// The last image that was traced whole, or in part upon another.
@@ -64,8 +64,8 @@ impl Earlier {
     }
 
     /// Keeps what stands behind the pixels of the next `write`.
-    pub fn keep_proof(&mut self, precision: Precision, proof: Option<Proof>) {
-        self.proofs.push((precision, proof));
+    pub fn keep_proof(&mut self, proof: Option<Proof>, unproved: Unproved) {
+        self.proofs.push((proof, unproved));
     }
 
     /// Keeps the colour of all pixels of the next `write`, if they have one.
@@ -78,14 +78,18 @@ impl Earlier {
         self.colors[write_idx]
     }
 
-    /// Returns the arithmetic that gave the pixels of an earlier `write`.
-    pub fn precision(&self, write_idx: usize) -> Precision {
-        self.proofs[write_idx].0
+    /// Returns what stands behind the pixels of an earlier `write`, and which of them are not proved.
+    pub fn proof(&self, write_idx: usize) -> &(Option<Proof>, Unproved) {
+        &self.proofs[write_idx]
     }
 
-    /// Returns what stands behind the pixels of an earlier `write`.
-    pub fn proof(&self, write_idx: usize) -> Option<&Proof> {
-        self.proofs[write_idx].1.as_ref()
+    /// Tells whether another scene may have pixels of an earlier `write`. That those of both are the same is proved of what is
+    /// right, and not of best values. Of a draft nothing is proved, and nothing asked.
+    fn may_share(&self, write_idx: usize, settings: &Settings) -> bool {
+        let (proof, unproved) = self.proof(write_idx);
+        settings.precision == Precision::F32
+            || unproved.n_pixels == 0
+                && proof.as_ref().is_none_or(|proof| proof.is_complete() && proof.exact.lists_all_ties())
     }
 
     /// Keeps the file of a `write`.
@@ -96,34 +100,26 @@ impl Earlier {
     /// Returns the `write` with the same scene, and its file.
     pub fn same_scene(&self, write_idx: usize) -> Option<(usize, &[u8])> {
         let now = self.views.get(write_idx)?;
-        self.find_file(|earlier| earlier == now)
+        self.find_file(|file| self.views[file.write_idx] == *now)
     }
 
     /// Returns the `write` with the same image, and its file.
     pub fn same_image(&self, plan: &Plan<'_>) -> Option<(usize, &[u8])> {
-        self.find_file(|earlier| plan.changes_since(earlier) == Changes::Nothing)
+        self.find_file(|file| {
+            self.may_share(file.write_idx, &plan.settings)
+                && plan.changes_since(&self.views[file.write_idx]) == Changes::Nothing
+        })
     }
 
-    fn find_file(&self, is_same: impl Fn(&Registers) -> bool) -> Option<(usize, &[u8])> {
-        let file = self.files.iter().rev().find(|file| is_same(&self.views[file.write_idx]))?;
+    fn find_file(&self, is_same: impl Fn(&File) -> bool) -> Option<(usize, &[u8])> {
+        let file = self.files.iter().rev().find(|file| is_same(file))?;
         Some((file.write_idx, &file.bytes))
-    }
-
-    /// Forgets the pixels so far.
-    pub fn forget_pixels(&mut self) {
-        self.pixels = None;
     }
 
     /// Returns the pixels so far, for an image to be traced upon, with its `write` and the tiles that may differ.
     pub fn shared_pixels(&self, plan: &Plan<'_>) -> Option<(usize, TileMask)> {
         let (write_idx, _) = self.pixels.as_ref()?;
-        let may_share = match self.proof(*write_idx) {
-            // Which of its ties lie in the pixels to be shared must be known.
-            Some(proof) => proof.exact.lists_all_ties(),
-            // It is not proved, and this image is to be.
-            None => !plan.settings.precision.is_proved(),
-        };
-        if !may_share {
+        if !self.may_share(*write_idx, &plan.settings) {
             return None;
         }
         match plan.changes_since(&self.views[*write_idx]) {

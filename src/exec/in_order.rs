@@ -12,7 +12,7 @@ use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 /// - `max_ahead`: how many items may be on their way at a time; at least 1.
 /// - `make`: makes an item on any thread; the scratch memory is that of the thread, the item may have been another's
 ///   before. It must not wait for rayon, which could then call it a second time on the same thread.
-/// - `take`: is called by any thread, never by two at a time.
+/// - `take`: is called by any thread, never by two at a time, with the number of the item too.
 ///
 /// # Errors
 /// The first error of either; then no further item is begun.
@@ -20,7 +20,7 @@ pub(super) fn in_order<W, T, E>(
     n_items: u32,
     max_ahead: u32,
     make: impl Fn(&mut W, u32, &mut T) -> Result<(), E> + Sync,
-    take: impl FnMut(&T) -> Result<(), E> + Send,
+    take: impl FnMut(u32, &mut T) -> Result<(), E> + Send,
 ) -> Result<(), E>
 where
     W: Default,
@@ -77,7 +77,7 @@ struct State<T, K, E> {
 impl<M, T, K, E> Line<M, T, K, E>
 where
     T: Default,
-    K: FnMut(&T) -> Result<(), E>,
+    K: FnMut(u32, &mut T) -> Result<(), E>,
 {
     /// Makes items until there are no more.
     fn work<W: Default>(&self)
@@ -120,12 +120,12 @@ where
             && let Some(mut take) = state.take.take()
         {
             let next = state.n_taken;
-            let Some(item) = state.ready.remove(&next) else {
+            let Some(mut item) = state.ready.remove(&next) else {
                 state.take = Some(take);
                 return;
             };
             drop(state);
-            let taken = take(&item);
+            let taken = take(next, &mut item);
             state = self.lock();
             state.take = Some(take);
             state.free.push(item);
@@ -187,7 +187,7 @@ mod tests {
         {
             let mut taken = Vec::new();
             let ended: Result<(), u32> = in_pool(n_threads, || {
-                in_order(n_items, max_ahead, square, |item| {
+                in_order(n_items, max_ahead, square, |_, item| {
                     taken.push(*item);
                     Ok(())
                 })
@@ -205,7 +205,7 @@ mod tests {
             // An item may be counted after it is taken.
             if ahead <= 4 { Ok(()) } else { Err(ahead) }
         };
-        let take = |_: &u32| {
+        let take = |_, _: &mut u32| {
             n_taken.fetch_add(1, Ordering::SeqCst);
             Ok(())
         };
@@ -222,7 +222,7 @@ mod tests {
             }
             Ok::<(), ()>(())
         };
-        in_pool(3, || in_order(500, 5, make, |_| Ok(()))).expect("no errors");
+        in_pool(3, || in_order(500, 5, make, |_, _| Ok(()))).expect("no errors");
         assert!(n_new.into_inner() <= 5);
     }
 
@@ -233,12 +233,12 @@ mod tests {
                 *item = idx;
                 if idx == 50 { Err(idx) } else { Ok(()) }
             };
-            assert_eq!(in_pool(n_threads, || in_order(1 << 30, 8, make, |_| Ok(()))), Err(50));
+            assert_eq!(in_pool(n_threads, || in_order(1 << 30, 8, make, |_, _| Ok(()))), Err(50));
             let make = |_: &mut (), idx: u32, item: &mut u32| {
                 *item = idx;
                 Ok(())
             };
-            let take = |item: &u32| if *item == 50 { Err(*item) } else { Ok(()) };
+            let take = |_, item: &mut u32| if *item == 50 { Err(*item) } else { Ok(()) };
             assert_eq!(in_pool(n_threads, || in_order(1 << 30, 8, make, take)), Err(50));
         }
     }
@@ -250,7 +250,7 @@ mod tests {
                 assert!(idx != 50, "as it is meant");
                 Ok::<(), ()>(())
             };
-            let work = || in_pool(n_threads, || in_order(1 << 30, 8, make, |_| Ok(())));
+            let work = || in_pool(n_threads, || in_order(1 << 30, 8, make, |_, _| Ok(())));
             assert!(std::panic::catch_unwind(AssertUnwindSafe(work)).is_err());
         }
     }

@@ -8,6 +8,7 @@
 //!
 //! Never here: files, the clock, threads of its own (it works in the current rayon pool).
 
+mod budget;
 mod cancel;
 mod colors;
 mod earlier;
@@ -21,6 +22,7 @@ mod pieces;
 mod proof;
 mod sink;
 mod stream;
+mod unproved;
 mod write;
 
 pub use cancel::CancellationToken;
@@ -29,12 +31,12 @@ pub use name::{Refusal, refuse_name, refused_names};
 pub use observe::{Event, Observer, Origin, WriteReport};
 pub use proof::Proof;
 pub use sink::{ImageRequest, MemoryFile, MemorySink, Sink, SinkError, Step};
+pub use unproved::Unproved;
 
 use std::io;
 
 use crate::diag::Diagnostic;
 use crate::exec::earlier::Earlier;
-use crate::exec::limit::Limit;
 use crate::exec::write::Write;
 use crate::ir::{Command, Registers, SceneView, Valid};
 use crate::plan::Settings;
@@ -106,8 +108,7 @@ pub fn execute<S: Sink>(program: &Valid, options: Options<'_>, sink: &mut S) -> 
         registers.step(command);
         if let Command::Write(name) = command {
             let view = SceneView::new(program, registers);
-            let limit = Limit::new(options.settings);
-            let write = Write { program, command_idx: idx, write_idx: reports.len(), name, options, limit: &limit };
+            let write = Write { program, command_idx: idx, write_idx: reports.len(), name, options };
             reports.push(write.run(view, &mut earlier, sink)?);
         }
     }

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use crate::exec::Proof;
+use crate::exec::{Proof, Unproved};
 use crate::plan::{Precision, Savings, Size};
 use crate::trace::{Counts, Spared};
 
@@ -79,10 +79,7 @@ pub struct WriteReport {
     pub name: String,
     /// Pixels of the image.
     pub size: Size,
-    /// The arithmetic that gave its pixels: that of the settings, or [`Precision::F64`] where [`ExactWork::Limited`] was not
-    /// enough.
-    ///
-    /// [`ExactWork::Limited`]: crate::plan::ExactWork::Limited
+    /// The arithmetic that was asked for.
     pub precision: Precision,
     /// Length of the file.
     pub n_bytes: u64,
@@ -98,6 +95,8 @@ pub struct WriteReport {
     pub counts: Counts,
     /// What stands behind its pixels, where everything is proved.
     pub proof: Option<Proof>,
+    /// Its pixels that have their best value and no proof, those with open ties apart.
+    pub unproved: Unproved,
     /// CRC-32 of the file, where everything is proved.
     pub crc32: Option<u32>,
     /// Time that threads spent tracing, added up. While they share rows each is counted from the beginning to the end.
@@ -106,6 +105,20 @@ pub struct WriteReport {
     pub encode_time: Duration,
     /// Time spent giving the file its name.
     pub save_time: Duration,
-    /// Time from beginning to end, a first attempt that took too much exact work included.
+    /// Time from beginning to end.
     pub total_time: Duration,
+}
+
+impl WriteReport {
+    /// Returns the number of pixels of the image.
+    #[must_use]
+    pub fn n_pixels(&self) -> u64 {
+        u64::from(self.size.width()) * u64::from(self.size.height())
+    }
+
+    /// Returns how many pixels are not proved: those that have their best value, and those with open ties.
+    #[must_use]
+    pub fn n_unproved(&self) -> u64 {
+        self.unproved.n_pixels + self.proof.as_ref().map_or(0, |proof| proof.exact.n_open_pixels)
+    }
 }

@@ -14,6 +14,8 @@ pub struct Proof {
     pub n_double_double: u64,
     /// Pixels that arbitrary precision made, by their bits, and all ties: every pixel but those with open ties is proved.
     pub exact: Record,
+    /// Pixels whose exact work was more than there may be: they have their best values.
+    pub n_beyond_limit: u64,
     /// Pixels taken from an earlier image of the same program, whose proof holds for them; their ties are listed here too.
     pub n_shared: u64,
     /// The largest bound on the error of a channel that was rounded, in levels: of 255 c. What a channel loses by being
@@ -22,7 +24,7 @@ pub struct Proof {
 }
 
 impl Proof {
-    /// Makes the proof of an image that was rendered; `None` where nothing is proved to the end.
+    /// Makes the proof of an image that was rendered; `None` where not every pixel is to be proved.
     pub(super) fn new(precision: Precision, report: &WriteReport, exact: Record) -> Option<Self> {
         if !precision.is_proved() {
             return None;
@@ -32,19 +34,20 @@ impl Proof {
             Origin::Traced | Origin::CopiedFrom { .. } => 0,
         };
         let n_double_double = report.counts.refined_pixels;
-        let n_pixels = u64::from(report.size.width()) * u64::from(report.size.height());
+        let n_beyond_limit = report.unproved.n_pixels;
         Some(Self {
-            n_binary64: n_pixels - n_shared - n_double_double - exact.n_pixels(),
+            n_binary64: report.n_pixels() - n_shared - n_double_double - exact.n_pixels() - n_beyond_limit,
             n_double_double,
+            n_beyond_limit,
             largest_bound: exact.largest_error.max(report.counts.largest_bound),
             exact,
             n_shared,
         })
     }
 
-    /// Tells whether every pixel is proved: no tie is open.
+    /// Tells whether every pixel is proved: no tie is open, and none took more work than it may.
     #[must_use]
     pub fn is_complete(&self) -> bool {
-        self.exact.n_open_pixels == 0
+        self.exact.n_open_pixels == 0 && self.n_beyond_limit == 0
     }
 }

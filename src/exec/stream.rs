@@ -36,8 +36,9 @@ const MAX_BYTES_AHEAD: usize = 64 << 20;
 #[derive(Default)]
 struct Band {
     encoded: EncodedBand,
-    /// The row behind it.
-    end: u32,
+    rows: Range<u32>,
+    /// Its pixels, if some may have to be taken back.
+    pixels: Vec<u8>,
     colors: Colors,
     counts: Counts,
     trace_time: Duration,
@@ -87,7 +88,10 @@ impl Write<'_> {
         let n_ahead = (MAX_BYTES_AHEAD / band_bytes).clamp(n_threads + 1, n_threads * BANDS_AHEAD_PER_THREAD);
         let make =
             |pixels: &mut Vec<u8>, band_idx, band: &mut Band| self.make_band(painter, bands, band_idx, pixels, band);
-        in_order(bands.n_bands(), n_ahead as u32, make, |band| output.put_band(band))
+        in_order(bands.n_bands(), n_ahead as u32, make, |band_idx, band| {
+            output.close_band(painter, bands, band_idx, band);
+            output.put_band(band)
+        })
     }
 
     /// Traces and encodes a band on this thread.
@@ -100,7 +104,8 @@ impl Write<'_> {
         band: &mut Band,
     ) -> Result<(), ExecError> {
         let rows = bands.rows(band_idx);
-        band.end = rows.end;
+        band.rows = rows.clone();
+        band.pixels.clear();
         if let Some(color) = painter.uniform_rows(rows.clone()) {
             (band.counts, band.trace_time) = Default::default();
             band.colors = Colors::One(color);
@@ -109,9 +114,12 @@ impl Write<'_> {
         }
         pixels.resize(bands.rgb_bytes(&rows), 0);
         let is_cancelled = || self.is_cancelled();
-        (band.counts, band.trace_time) = self.timed(|| painter.render_band(rows, pixels, &is_cancelled));
+        (band.counts, band.trace_time) = self.timed(|| painter.render_band(rows.clone(), pixels, &is_cancelled));
         self.check_cancelled()?;
         band.colors = Colors::of(pixels);
+        if painter.has_pending(&rows) {
+            band.pixels.extend_from_slice(pixels);
+        }
         ((), band.encode_time) = self.timed(|| bands.encode(band_idx, pixels, &mut band.encoded));
         Ok(())
     }
@@ -136,7 +144,11 @@ impl Write<'_> {
             n_rows = rows.end;
             let start = pixels.len();
             pixels.resize(start + bands.rgb_bytes(&rows), 0);
-            let (counts, time) = self.timed(|| self.render_piece(painter, bands, rows, &mut pixels[start..]));
+            let (counts, time) = self.timed(|| {
+                let mut counts = self.render_piece(painter, bands, rows.clone(), &mut pixels[start..]);
+                painter.close(&rows, &mut pixels[start..], &mut counts);
+                counts
+            });
             self.check_cancelled()?;
             size.adapt(time);
             output.report.counts += counts;
@@ -187,6 +199,14 @@ impl<F: io::Write> Output<'_, F> {
         written.map_err(|error| self.write.write_error(error))
     }
 
+    /// Takes back what is too much exact work, and encodes the band anew if there is any.
+    fn close_band(&self, painter: &Painter<'_, '_>, bands: &PngBands, band_idx: u32, band: &mut Band) {
+        if !band.pixels.is_empty() && painter.close(&band.rows, &mut band.pixels, &mut band.counts) {
+            band.colors = Colors::of(&band.pixels);
+            bands.encode(band_idx, &band.pixels, &mut band.encoded);
+        }
+    }
+
     /// Writes the next band and reports what it took.
     fn put_band(&mut self, band: &Band) -> Result<(), ExecError> {
         self.colors = self.colors.and(band.colors);
@@ -194,7 +214,7 @@ impl<F: io::Write> Output<'_, F> {
         self.report.trace_time += band.trace_time;
         self.report.encode_time += band.encode_time;
         self.put(&band.encoded)?;
-        self.tell(band.end);
+        self.tell(band.rows.end);
         Ok(())
     }
 

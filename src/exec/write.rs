@@ -7,10 +7,10 @@ use crate::exec::earlier::Earlier;
 use crate::exec::exactly::Exactly;
 use crate::exec::limit::Limit;
 use crate::exec::painter::Painter;
-use crate::exec::{Event, ExecError, ImageRequest, Options, Origin, Proof, Sink, SinkError, WriteReport};
+use crate::exec::{Event, ExecError, ImageRequest, Options, Origin, Proof, Sink, SinkError, Unproved, WriteReport};
 use crate::image::Crc32;
 use crate::ir::{SceneView, Valid};
-use crate::plan::{Precision, Savings, Settings, plan};
+use crate::plan::{Savings, is_within_range, plan};
 use crate::trace::{Counts, Spared, Tracer};
 
 /// What is copied between two looks at the cancellation.
@@ -24,13 +24,10 @@ pub(super) struct Write<'a> {
     pub write_idx: usize,
     pub name: &'a str,
     pub options: Options<'a>,
-    /// How much `exact` may work for it.
-    pub limit: &'a Limit,
 }
 
 impl Write<'_> {
-    /// Renders the scene as it stands in `view`, and saves it; takes what it shares with `earlier` images from there. If it
-    /// takes more exact work than it may, the image is made in plain [`Precision::F64`].
+    /// Renders the scene as it stands in `view`, and saves it; takes what it shares with `earlier` images from there.
     pub fn run<S: Sink>(
         &self,
         view: SceneView<'_>,
@@ -38,27 +35,6 @@ impl Write<'_> {
         sink: &mut S,
     ) -> Result<WriteReport, ExecError> {
         let start = self.options.observer.now();
-        let saved = self.run_within_limit(view, earlier, sink, start);
-        let is_passed = matches!(saved, Err(ExecError::Cancelled)) && self.limit.is_passed();
-        if !is_passed || self.options.cancellation.is_cancelled() {
-            return saved;
-        }
-        earlier.forget_pixels();
-        let settings = Settings { precision: Precision::F64, ..self.options.settings.clone() };
-        let (options, limit) = (Options { settings: &settings, ..self.options }, Limit::none());
-        Write { options, limit: &limit, ..*self }.run_within_limit(view, earlier, sink, start)
-    }
-
-    /// Does the work of [`Write::run`] within the limit; passing it is being cancelled.
-    ///
-    /// `start`: when the first attempt began, for the report.
-    fn run_within_limit<S: Sink>(
-        &self,
-        view: SceneView<'_>,
-        earlier: &mut Earlier,
-        sink: &mut S,
-        start: Duration,
-    ) -> Result<WriteReport, ExecError> {
         let Options { settings, observer, .. } = self.options;
         let size = settings.size;
         observer.event(&Event::Started { write_idx: self.write_idx, name: self.name, size });
@@ -66,7 +42,7 @@ impl Write<'_> {
         let file = sink.create(&ImageRequest { name: self.name, size }).map_err(|error| self.sink_error(error))?;
         let mut report = self.new_report();
         let file = self.fill(view, earlier, file, &mut report)?;
-        earlier.keep_proof(report.precision, report.proof.clone());
+        earlier.keep_proof(report.proof.clone(), report.unproved.clone());
         earlier.keep_color(report.color);
         let (saved, save_time) = self.timed(|| sink.commit(file));
         saved.map_err(|error| self.sink_error(error))?;
@@ -85,39 +61,47 @@ impl Write<'_> {
         report: &mut WriteReport,
     ) -> Result<F, ExecError> {
         if let Some((write_idx, bytes)) = earlier.same_scene(self.write_idx) {
-            report.proof = earlier.proof(write_idx).cloned();
-            report.precision = earlier.precision(write_idx);
+            (report.proof, report.unproved) = earlier.proof(write_idx).clone();
             report.color = earlier.color(write_idx);
             return self.copy(write_idx, bytes, file, report);
         }
         let settings = self.options.settings;
-        let exactly = Exactly::new(view, settings, self.limit);
-        let referee = settings.precision.is_proved().then_some(&exactly);
+        let exactly = Exactly::new(view, settings, Limit::new(settings));
         let file = if exactly.makes_all() {
-            self.limit.expect_all(settings);
-            self.check_cancelled()?;
             let file = Kept::new(file, earlier.n_bytes_to_keep(self.write_idx));
             self.stream(&Painter::Exact(&exactly), file, report)?
         } else {
-            self.trace(view, referee, earlier, file, report)?
+            self.trace(view, &exactly, earlier, file, report)?
         };
         if let Some(bytes) = file.bytes {
             earlier.keep_file(self.write_idx, bytes);
         }
         if !matches!(report.origin, Origin::CopiedFrom { .. }) {
-            let record = exactly.into_record();
+            report.counts += exactly.counts();
+            let (record, unproved) = exactly.into_findings();
+            report.unproved = match settings.precision.is_proved() {
+                true => unproved,
+                false => Unproved::unlisted(self.n_undecided(view, report)),
+            };
             report.proof = Proof::new(settings.precision, report, record);
         }
         Ok(file.inner)
     }
 
+    /// Returns how many pixels of an image that is not to be proved altogether are not: those that the tracer does not decide, or
+    /// all of a draft and where lengths differ too much for its bounds.
+    fn n_undecided(&self, view: SceneView<'_>, report: &WriteReport) -> u64 {
+        let is_bound = report.counts.draft_pixels == 0 && is_within_range(&view, self.options.settings.part);
+        if is_bound { report.counts.unproved_pixels } else { report.n_pixels() }
+    }
+
     /// Does the work of [`Write::fill`] by the tracer.
     ///
-    /// `referee`: settles what it leaves open.
+    /// `exactly`: settles what it leaves open, where everything is to be proved.
     fn trace<F: io::Write + Send>(
         &self,
         view: SceneView<'_>,
-        referee: Option<&Exactly<'_>>,
+        exactly: &Exactly<'_>,
         earlier: &mut Earlier,
         file: F,
         report: &mut WriteReport,
@@ -125,23 +109,21 @@ impl Write<'_> {
         let plan = plan(view, self.options.settings);
         report.savings = plan.savings();
         if let Some((write_idx, bytes)) = earlier.same_image(&plan) {
-            report.proof = earlier.proof(write_idx).cloned();
-            report.precision = earlier.precision(write_idx);
+            (report.proof, report.unproved) = earlier.proof(write_idx).clone();
             report.color = earlier.color(write_idx);
             return Ok(Kept::new(self.copy(write_idx, bytes, file, report)?, 0));
         }
         let file = Kept::new(file, earlier.n_bytes_to_keep(self.write_idx));
         let shared = earlier.shared_pixels(&plan);
         if let Some((write_idx, changed)) = &shared {
-            if let (Some(exactly), Some(proof)) = (referee, earlier.proof(*write_idx)) {
+            if let (Some(proof), _) = earlier.proof(*write_idx) {
                 exactly.take_over(proof.exact.taken_over(|column, row| !changed.contains(column, row)));
             }
-            let n_pixels = u64::from(report.size.width()) * u64::from(report.size.height());
             report.origin = Origin::SharedWith {
                 write_idx: *write_idx,
                 n_traced_tiles: changed.n_tiles(),
                 n_tiles: changed.n_all_tiles(),
-                n_shared_pixels: n_pixels - changed.n_pixels(report.size),
+                n_shared_pixels: report.n_pixels() - changed.n_pixels(report.size),
             };
         }
         let canvas = earlier.canvas(self.write_idx, &plan, shared.is_some());
@@ -151,11 +133,10 @@ impl Write<'_> {
             Some(canvas) => tracer.upon(canvas, shared.map(|(_, changed)| changed)),
             None => tracer,
         };
-        let tracer = match referee {
-            Some(referee) => tracer.settled_by(referee),
-            None => tracer,
-        };
-        let file = self.stream(&Painter::Traced(Box::new(tracer)), file, report)?;
+        let is_proved = self.options.settings.precision.is_proved();
+        let tracer = if is_proved { tracer.settled_by(exactly) } else { tracer };
+        let painter = Painter::Traced(Box::new(tracer), exactly);
+        let file = self.stream(&painter, file, report)?;
         report.spared = report.counts.spared(n_objects);
         Ok(file)
     }
@@ -199,6 +180,7 @@ impl Write<'_> {
             spared: Spared::default(),
             counts: Counts::default(),
             proof: None,
+            unproved: Unproved::default(),
             crc32: None,
             trace_time: Duration::ZERO,
             encode_time: Duration::ZERO,
@@ -219,7 +201,7 @@ impl Write<'_> {
 
     /// Tells whether the image is to be given up.
     pub(super) fn is_cancelled(&self) -> bool {
-        self.options.cancellation.is_cancelled() || self.limit.is_passed()
+        self.options.cancellation.is_cancelled()
     }
 
     fn sink_error(&self, error: SinkError) -> ExecError {

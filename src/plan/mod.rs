@@ -46,7 +46,7 @@ pub use tiles::Tiles;
 pub use tree::{Beam, Boxes, MeetBoxes, OneByOne, SearchRay};
 pub use writes::{Changes, TileMask};
 
-use crate::ir::{Registers, SceneView, Surface};
+use crate::ir::{SceneView, Surface};
 use crate::plan::analysis::{Analysis, analyse};
 use crate::plan::search::{AlongRays, AroundLights};
 
@@ -63,8 +63,8 @@ pub struct Plan<'p> {
     pub tiles: Tiles,
     /// What the passes have found.
     pub report: Report,
-    /// What the commands before the `write` have set.
-    registers: Registers,
+    /// The scene as it was declared.
+    pub view: SceneView<'p>,
     /// What is known of the objects, unless they are too many.
     known: Option<Analysis>,
     /// How rays other than those from the eye find what they may meet.
@@ -103,11 +103,34 @@ pub fn plan<'p>(view: SceneView<'p>, settings: &Settings) -> Plan<'p> {
         fov_deg: view.fov_deg(),
         tiles: Tiles::new(&scene, view.fov_deg(), settings),
         report,
-        registers: *view.registers(),
+        view,
         known,
         mirrored,
         all_lights: (0..scene.lights.len() as u32).collect(),
         everything,
+        scene,
+    }
+}
+
+/// Takes a scene as it is declared, in its own units, and finds out nothing: every ray is to be tested against everything.
+#[must_use]
+pub fn bare_plan<'p>(view: SceneView<'p>, settings: &Settings) -> Plan<'p> {
+    let settings = Settings { passes: Passes::none(), ..settings.clone() };
+    let scene = Scene::unscaled(view, settings.part);
+    let search = Search::Lists;
+    Plan {
+        search,
+        around_lights: AroundLights::new(&scene, search, &settings),
+        along_rays: AlongRays::new(&scene, search, &settings),
+        fov_deg: view.fov_deg(),
+        tiles: Tiles::new(&scene, view.fov_deg(), &settings),
+        report: Report::new(&view, &scene),
+        settings,
+        view,
+        known: None,
+        mirrored: None,
+        all_lights: (0..scene.lights.len() as u32).collect(),
+        everything: ObjectLists::everything(&scene),
         scene,
     }
 }

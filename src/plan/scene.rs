@@ -89,11 +89,16 @@ pub struct Scene<'p> {
 impl<'p> Scene<'p> {
     /// Lays out what `part` draws of `view`.
     pub fn new(view: SceneView<'p>, part: Part) -> Self {
-        let cylinders = match part {
-            Part::A => &[],
-            Part::B => view.cylinders(),
-        };
-        let scale = scale_to_unit(&view, cylinders);
+        let cylinders = cylinders_of(&view, part);
+        Self::scaled(view, cylinders, scale_to_unit(&view, cylinders))
+    }
+
+    /// Lays out what `part` draws of `view` in the units of the program, in which squares may overflow.
+    pub(super) fn unscaled(view: SceneView<'p>, part: Part) -> Self {
+        Self::scaled(view, cylinders_of(&view, part), 1.0)
+    }
+
+    fn scaled(view: SceneView<'p>, cylinders: &'p [ir::Cylinder], scale: f64) -> Self {
         let equations = view.equations();
         Self {
             background: view.background(),
@@ -200,6 +205,14 @@ pub(super) fn retain_at<T>(items: &mut Vec<T>, keep: impl Fn(usize) -> bool) {
     });
 }
 
+/// Returns the cylinders that `part` draws.
+fn cylinders_of<'p>(view: &SceneView<'p>, part: Part) -> &'p [ir::Cylinder] {
+    match part {
+        Part::A => &[],
+        Part::B => view.cylinders(),
+    }
+}
+
 /// Returns the lights that are not black.
 fn shining<'p>(view: &SceneView<'p>) -> impl Iterator<Item = &'p ir::Light> + use<'p> {
     view.lights().iter().filter(|light| shines(light))
@@ -270,10 +283,7 @@ const MIN_EXPONENT: i32 = -400;
 /// render, none but 0 is below 2⁻⁴⁰⁰. Outside of it pixels are still made, but bounds may not hold.
 #[must_use]
 pub fn is_within_range(view: &SceneView<'_>, part: Part) -> bool {
-    let cylinders = match part {
-        Part::A => &[],
-        Part::B => view.cylinders(),
-    };
+    let cylinders = cylinders_of(view, part);
     let scale = scale_to_unit(view, cylinders);
     let min = libm::ldexp(1.0, MIN_EXPONENT);
     let is_within = |length: f64| length == 0.0 || (length * scale).abs() >= min;

@@ -62,8 +62,8 @@ pub enum SampleAt {
 /// Which arithmetic traces pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Precision {
-    /// Binary64, and double-double where that does not decide a pixel. What that cannot decide either is taken for a tie;
-    /// few scenes need more.
+    /// Binary64, and double-double where that does not decide a pixel. What that cannot decide either has its best value, and
+    /// is counted; few scenes need more.
     F64,
     /// A draft in binary32, about twice as fast: some channels are a level off, and some pixels at edges are wrong. Images
     /// that binary32 cannot start from, such as those with the eye inside an object, are traced as by
@@ -116,8 +116,8 @@ pub enum BackendChoice {
 /// How much work in arbitrary precision an image of [`Precision::Certified`] may take.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ExactWork {
-    /// So much as ties along some rows and columns take. An image that takes more is made by [`Precision::F64`], all of it,
-    /// and its report says so. That depends on the scene and the settings alone.
+    /// So much as ties along some rows and columns take. Pixels that take more are not proved: they have their best values,
+    /// and the report counts them. Which they are depends on the scene and the settings alone.
     #[default]
     Limited,
     /// As much as it takes.

@@ -73,7 +73,7 @@ impl Plan<'_> {
     /// those of a `write` before.
     #[must_use]
     pub fn changes_since(&self, earlier: &Registers) -> Changes {
-        let now = &self.registers;
+        let now = self.view.registers();
         let is_same_view = now.fov_deg == earlier.fov_deg && now.background == earlier.background;
         if !is_same_view || !self.settings.passes.contains(Pass::Writes) {
             return Changes::Everything;

@@ -6,7 +6,7 @@ use std::sync::{Mutex, PoisonError};
 use glam::DVec3;
 
 use crate::plan::Size;
-use crate::trace::pixel;
+use crate::trace::{Place, pixel};
 
 /// The pixels of an image.
 #[derive(Debug)]
@@ -28,6 +28,12 @@ impl Canvas {
     pub(super) fn put(&self, rows: &Range<u32>, rgb: &[u8]) {
         let first = rows.start as usize * self.row_bytes;
         self.rgb.lock().unwrap_or_else(PoisonError::into_inner)[first..first + rgb.len()].copy_from_slice(rgb);
+    }
+
+    /// Takes over one pixel.
+    pub(super) fn put_pixel(&self, place: Place, bytes: [u8; 3]) {
+        let first = place.row as usize * self.row_bytes + place.column as usize * 3;
+        self.rgb.lock().unwrap_or_else(PoisonError::into_inner)[first..first + 3].copy_from_slice(&bytes);
     }
 
     /// Copies whole rows.

@@ -31,7 +31,9 @@ pub struct Counts {
     pub largest_bound: f64,
     /// Pixels that were made in arbitrary precision.
     pub exact_pixels: u64,
-    /// Decisions that the finest arithmetic could not make either, made by the rule for ties.
+    /// Pixels that nothing decided, or that took more exact work than there may be: they have their best values.
+    pub unproved_pixels: u64,
+    /// Decisions that were made by the rule for ties: proved, or open even to the finest arithmetic.
     pub ties: u64,
 }
 
@@ -93,6 +95,7 @@ impl AddAssign for Counts {
         self.refined_pixels += other.refined_pixels;
         self.largest_bound = self.largest_bound.max(other.largest_bound);
         self.exact_pixels += other.exact_pixels;
+        self.unproved_pixels += other.unproved_pixels;
         self.ties += other.ties;
     }
 }

@@ -1,4 +1,4 @@
-//! Who decides a comparison, and what happens when nobody can.
+//! Who decides a comparison, and says so when bounds leave it open.
 
 use std::cmp::Ordering;
 
@@ -17,29 +17,22 @@ pub struct Judge {
     pub counts: Counts,
     /// What was proved equal for the pixel at hand where bounds left it open.
     pub touches: Touches,
-    /// Whether what cannot be decided is a tie, because there is no finer arithmetic to ask.
-    pub takes_ties: bool,
+    /// Whether algebra is asked of every number that it knows of, because the bounds are none.
+    pub asks_algebra: bool,
 }
 
 impl Judge {
-    /// Compares a number with 0.
-    ///
-    /// What cannot be decided, where there is no finer arithmetic, is a tie and counts as equal. The semantics say what equality means at
-    /// every comparison: a tangent ray and a rim are met, a root at 0 and a light at the distance of a surface are not, of
-    /// hits at equal t the first declared is met.
+    /// Compares a number with 0. The semantics say what equality means at every comparison: a tangent ray and a rim are met, a
+    /// root at 0 and a light at the distance of a surface are not, of hits at equal t the first declared is met.
     ///
     /// # Errors
-    /// [`Doubt`] when the bounds allow several answers and ties are not taken.
+    /// [`Doubt`] when the bounds allow several answers.
     #[inline]
     pub fn compare_zero<R: Real>(&mut self, number: R) -> Result<Ordering, Doubt> {
         match number.sign() {
             Sign::Negative => Ok(Ordering::Less),
             Sign::Zero => Ok(Ordering::Equal),
             Sign::Positive => Ok(Ordering::Greater),
-            Sign::Unknown if self.takes_ties => {
-                self.counts.ties += 1;
-                Ok(Ordering::Equal)
-            }
             Sign::Unknown => Err(Doubt),
         }
     }
@@ -56,7 +49,7 @@ impl Judge {
         touch: Touch,
         is_zero: impl FnOnce() -> bool,
     ) -> Result<Ordering, Doubt> {
-        if number.sign() == Sign::Unknown && is_zero() {
+        if (self.asks_algebra || number.sign() == Sign::Unknown) && is_zero() {
             self.touches.count(touch);
             return Ok(Ordering::Equal);
         }
@@ -79,19 +72,12 @@ impl Judge {
         }
     }
 
-    /// Returns ⌊number⌋; at a tie that of the middle.
+    /// Returns ⌊number⌋.
     ///
     /// # Errors
-    /// As [`Judge::compare_zero`].
+    /// [`Doubt`] when the bounds allow several answers.
     pub fn floor<R: Real>(&mut self, number: R) -> Result<f64, Doubt> {
-        match number.floor() {
-            Some(floor) => Ok(floor),
-            None if self.takes_ties => {
-                self.counts.ties += 1;
-                Ok(number.value().floor())
-            }
-            None => Err(Doubt),
-        }
+        number.floor().ok_or(Doubt)
     }
 }
 
@@ -101,17 +87,19 @@ mod tests {
     use crate::math::Ball64;
 
     #[test]
-    fn a_floor_in_doubt_is_that_of_the_middle_where_ties_are_taken() {
-        // Three thirds may lie on either side of 1.
+    fn what_may_lie_on_either_side_is_in_doubt() {
         let third = Ball64::exact(1.0) / Ball64::exact(3.0);
         let in_doubt = third + third + third;
-        for takes_ties in [false, true] {
-            let mut judge = Judge { takes_ties, ..Judge::default() };
-            assert_eq!(judge.floor(Ball64::exact(1.5)), Ok(1.0));
-            assert_eq!(judge.counts.ties, 0);
-            let expected = if takes_ties { Ok(in_doubt.value().floor()) } else { Err(Doubt) };
-            assert_eq!(judge.floor(in_doubt), expected);
-            assert_eq!(judge.counts.ties, u64::from(takes_ties));
+        let mut judge = Judge::default();
+        assert_eq!((judge.floor(Ball64::exact(1.5)), judge.floor(in_doubt)), (Ok(1.0), Err(Doubt)));
+        assert_eq!(judge.compare_zero(in_doubt - Ball64::exact(1.0)), Err(Doubt));
+    }
+
+    #[test]
+    fn algebra_is_asked_in_doubt_alone_where_there_are_bounds() {
+        for (asks_algebra, expected) in [(false, Ordering::Greater), (true, Ordering::Equal)] {
+            let mut judge = Judge { asks_algebra, ..Judge::default() };
+            assert_eq!(judge.compare_zero_asking(Ball64::exact(1.0), Touch::Rim, || true), Ok(expected));
         }
     }
 

@@ -3,14 +3,15 @@
 //! Most pixels are traced by `wide`, many at once in plain binary64, where everything is decided beyond bounds that are
 //! known beforehand. Every other pixel is traced in binary64 with a running bound on every number ([`Ball64`]). If each
 //! comparison on its way and the rounding of its channels are decided by the bounds, it is proved. If not, it is traced
-//! again in double-double ([`Ball106`]); what that cannot decide either is a tie, counted and drawn as equality asks. The
-//! code is the same for both, generic over [`Real`].
+//! again in double-double ([`Ball106`]); what that cannot decide either is left to a [`Referee`], and what that does not settle
+//! gets its best value (`best`) and is counted. The code is the same for all, generic over [`Real`].
 //!
 //! Reading order: [`Tracer::render_rows`], `pixel`, `integrator`, `intersect`, `shade`, `occlude`. `reject` keeps most
 //! primitives away from them.
 //!
 //! Never here: files, encoding, progress (see `exec`); an epsilon.
 
+mod best;
 mod camera;
 mod canvas;
 mod counts;
@@ -30,15 +31,17 @@ mod touch;
 mod unrounded;
 mod wide;
 
+pub use best::BestValues;
 pub use canvas::Canvas;
 pub use counts::{Counts, Spared};
-pub use referee::Referee;
+pub use referee::{Place, Referee};
 pub use touch::Touches;
 pub use unrounded::Unrounded;
 #[cfg(feature = "testing")]
 pub use wide::{fault::Fault, notes::Proved};
 
 use std::ops::Range;
+use std::sync::OnceLock;
 
 use rayon::prelude::*;
 
@@ -62,6 +65,8 @@ pub struct Tracer<'p> {
     wide: Option<Wide>,
     upon: Option<Upon<'p>>,
     referee: Option<&'p dyn Referee>,
+    /// Makes what nothing decides, once it is needed.
+    best: OnceLock<BestValues<'p>>,
 }
 
 /// An earlier image that an image is traced upon.
@@ -107,6 +112,7 @@ impl<'p> Tracer<'p> {
             plan,
             upon: None,
             referee: None,
+            best: OnceLock::new(),
         }
     }
 
@@ -207,6 +213,21 @@ impl<'p> Tracer<'p> {
         counts
     }
 
+    /// Gives a pixel its best value, in `rgb`, which holds `rows`, and on the canvas if there is one: for one that the referee
+    /// has settled and takes back.
+    pub fn take_back(&self, place: Place, rows: &Range<u32>, rgb: &mut [u8], counts: &mut Counts) {
+        let width = self.plan.settings.size.width() as usize;
+        let bytes = self.best_values().pixel(place.column, place.row, counts);
+        pixel_of(rgb, rows, width, place).copy_from_slice(&bytes);
+        if let Some(upon) = &self.upon {
+            upon.canvas.put_pixel(place, bytes);
+        }
+    }
+
+    fn best_values(&self) -> &BestValues<'p> {
+        self.best.get_or_init(|| BestValues::new(self.plan.view, &self.plan.settings))
+    }
+
     /// Tells whether a pixel has to be traced.
     fn is_new(&self, column: u32, row: u32) -> bool {
         let changed = self.upon.as_ref().and_then(|upon| upon.changed.as_ref());
@@ -221,7 +242,8 @@ impl<'p> Tracer<'p> {
         }
         let mut settler = Settler::new(self);
         let Some(wide) = &self.wide else {
-            settler.settle_all(rows, rgb, is_cancelled);
+            settler.settle_all(&rows, rgb, is_cancelled);
+            settler.close(&rows, rgb, is_cancelled);
             return settler.counts();
         };
         let width = self.plan.settings.size.width() as usize;
@@ -237,11 +259,11 @@ impl<'p> Tracer<'p> {
             scratch.write(&rect, rgb, width, rows.start);
             scratch.for_slow(&rect, |column, row| {
                 if !is_cancelled() {
-                    let first = ((row - rows.start) as usize * width + column as usize) * 3;
-                    rgb[first..first + 3].copy_from_slice(&settler.settle(column, row));
+                    settler.settle(Place { row, column }, pixel_of(rgb, &rows, width, Place { row, column }));
                 }
             });
         }
+        settler.close(&rows, rgb, is_cancelled);
         let mut counts = settler.counts();
         counts += scratch.counts();
         counts
@@ -283,40 +305,58 @@ impl<'p> Tracer<'p> {
     }
 }
 
-/// Settles pixels one by one, in as fine an arithmetic as each needs.
+/// Returns the bytes of a pixel among those of whole rows.
+fn pixel_of<'a>(rgb: &'a mut [u8], rows: &Range<u32>, width: usize, place: Place) -> &'a mut [u8] {
+    let first = ((place.row - rows.start) as usize * width + place.column as usize) * 3;
+    &mut rgb[first..first + 3]
+}
+
+/// Settles the pixels of some rows one by one, in as fine an arithmetic as each needs.
 struct Settler<'a, 'p> {
     tracer: &'a Tracer<'p>,
     coarse: Integrator<'a, 'p, Ball64>,
     fine: Integrator<'a, 'p, Ball106>,
+    /// What none of them decides.
+    open: Vec<Place>,
+    /// What is done for that.
+    counts: Counts,
 }
 
 impl<'a, 'p> Settler<'a, 'p> {
     fn new(tracer: &'a Tracer<'p>) -> Self {
-        let mut fine = Integrator::new(&tracer.plan);
-        fine.judge.takes_ties = tracer.referee.is_none();
-        Self { tracer, coarse: Integrator::new(&tracer.plan), fine }
+        Self {
+            tracer,
+            coarse: Integrator::new(&tracer.plan),
+            fine: Integrator::new(&tracer.plan),
+            open: Vec::new(),
+            counts: Counts::default(),
+        }
     }
 
-    /// Returns the bytes of a pixel.
-    fn settle(&mut self, column: u32, row: u32) -> [u8; 3] {
+    /// Writes the bytes of a pixel, or keeps its place if it stays open.
+    fn settle(&mut self, place: Place, rgb: &mut [u8]) {
+        self.counts.settled_pixels += 1;
+        match self.decide(place) {
+            Some(bytes) => rgb.copy_from_slice(&bytes),
+            None => self.open.push(place),
+        }
+    }
+
+    /// Returns the bytes of a pixel; `None` when bounds leave it open.
+    fn decide(&mut self, Place { row, column }: Place) -> Option<[u8; 3]> {
         let tracer = self.tracer;
-        self.coarse.judge.counts.settled_pixels += 1;
         let pixel = tracer.sampling.pixel(column, row);
         let among = tracer.plan.tiles.candidates(column, row);
         if let Ok(bytes) = pixel::settle(&mut self.coarse, &tracer.camera, &pixel, among) {
             self.tell_touches(column, row, self.coarse.judge.touches);
-            return bytes;
+            return Some(bytes);
         }
         if let Ok(bytes) = pixel::settle(&mut self.fine, &tracer.fine_camera, &pixel, among) {
             self.tell_touches(column, row, self.fine.judge.touches);
             self.fine.judge.counts.refined_pixels += 1;
-            return bytes;
+            return Some(bytes);
         }
-        let referee = tracer.referee.expect("without a referee ties are decided by rule");
-        let (bytes, n_ties) = referee.settle(column, row);
-        self.fine.judge.counts.exact_pixels += 1;
-        self.fine.judge.counts.ties += u64::from(n_ties);
-        bytes
+        None
     }
 
     /// Counts the ties that were proved on the way to a pixel, and tells the referee.
@@ -324,30 +364,55 @@ impl<'a, 'p> Settler<'a, 'p> {
         if touches == Touches::default() {
             return;
         }
-        self.fine.judge.counts.ties += u64::from(touches.total());
+        self.counts.ties += u64::from(touches.total());
         if let Some(referee) = self.tracer.referee {
             referee.hear(column, row, touches);
         }
     }
 
-    /// Settles all pixels of these rows.
-    fn settle_all(&mut self, rows: Range<u32>, rgb: &mut [u8], is_cancelled: &dyn Fn() -> bool) {
+    /// Settles all pixels of these rows that are new.
+    fn settle_all(&mut self, rows: &Range<u32>, rgb: &mut [u8], is_cancelled: &dyn Fn() -> bool) {
         let row_bytes = self.tracer.plan.settings.size.width() as usize * 3;
-        for (row, rgb) in rows.zip(rgb.chunks_exact_mut(row_bytes)) {
+        for (row, rgb) in rows.clone().zip(rgb.chunks_exact_mut(row_bytes)) {
             for (column, rgb) in (0..).zip(rgb.chunks_exact_mut(3)) {
                 if is_cancelled() {
                     return;
                 }
                 if self.tracer.is_new(column, row) {
-                    rgb.copy_from_slice(&self.settle(column, row));
+                    self.settle(Place { row, column }, rgb);
                 }
             }
         }
     }
 
+    /// Leaves to the referee what is open, and gives its best value to what stays so.
+    fn close(&mut self, rows: &Range<u32>, rgb: &mut [u8], is_cancelled: &(dyn Fn() -> bool + Sync)) {
+        if self.open.is_empty() || is_cancelled() {
+            return;
+        }
+        let tracer = self.tracer;
+        self.open.sort_unstable();
+        let settled = match tracer.referee {
+            Some(referee) => referee.settle(rows, &self.open, is_cancelled),
+            None => vec![None; self.open.len()],
+        };
+        let width = tracer.plan.settings.size.width() as usize;
+        for (&place, bytes) in self.open.iter().zip(settled) {
+            if is_cancelled() {
+                return;
+            }
+            let bytes = bytes.unwrap_or_else(|| {
+                self.counts.unproved_pixels += 1;
+                tracer.best_values().pixel(place.column, place.row, &mut self.counts)
+            });
+            pixel_of(rgb, rows, width, place).copy_from_slice(&bytes);
+        }
+    }
+
     /// Returns what has been done so far.
     fn counts(&self) -> Counts {
-        let mut counts = self.coarse.judge.counts;
+        let mut counts = self.counts;
+        counts += self.coarse.judge.counts;
         counts += self.fine.judge.counts;
         counts
     }

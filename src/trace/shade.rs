@@ -86,10 +86,11 @@ impl<R: Real> Integrator<'_, '_, R> {
             Part::A => DVec3::ZERO,
             Part::B => at.surface.ambient,
         };
-        let mut color = Vector::exact(ambient);
         if !answers_light(at.surface, self.plan.settings.part) {
-            return Ok(color);
+            return Ok(Vector::exact(ambient));
         }
+        // Lights first: those that outshine the rest and cancel each other leave it as it is.
+        let mut lit = Vector::exact(DVec3::ZERO);
         let plan = self.plan;
         if plan.settings.part == Part::B {
             self.judge.counts.lightings += plan.scene.lights.len() as u64;
@@ -99,10 +100,10 @@ impl<R: Real> Integrator<'_, '_, R> {
             let light = &plan.scene.lights[light_idx];
             let to_light = Vector::exact(light.position) - at.point;
             if self.judge.is_positive(at.normal.dot(to_light))? && !self.is_shadowed(at, light_idx, to_light)? {
-                color = color + lit_by(at, light, to_light, plan.settings.part);
+                lit = lit + lit_by(at, light, to_light, plan.settings.part);
             }
         }
-        Ok(color)
+        Ok(Vector::exact(ambient) + lit)
     }
 
     /// Tells whether a surface is met on the way to a light.

@@ -9,7 +9,7 @@ use crate::trace::draft::Draft;
 use crate::trace::integrator::Integrator;
 use crate::trace::pixel::{self, Pixel};
 use crate::trace::wide::Wide;
-use crate::trace::{Settler, Tracer};
+use crate::trace::{Counts, Settler, Tracer};
 
 /// The pixels of an image, row by row from the top, and what they were rounded from.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -38,7 +38,7 @@ impl Tracer<'_> {
         }
     }
 
-    /// Traces each pixel by `trace`, which must be able to decide it.
+    /// Traces each pixel by `trace`; what that cannot decide has its best value.
     fn unrounded_pixels(
         &self,
         trace: impl Fn(&mut Settler<'_, '_>, &Pixel, Candidates<'_>) -> Option<([u8; 3], [f64; 3])> + Sync,
@@ -49,7 +49,7 @@ impl Tracer<'_> {
             let traced = (0..size.width()).map(|column| {
                 let among = self.plan.tiles.candidates(column, row);
                 trace(&mut settler, &self.sampling.pixel(column, row), among)
-                    .expect("the finest arithmetic decides ties by rule")
+                    .unwrap_or_else(|| self.best_values().unrounded_pixel(column, row, &mut Counts::default()))
             });
             traced.collect::<Vec<_>>()
         });

@@ -51,6 +51,8 @@ pub struct SceneStats {
     save: Duration,
     #[serde(flatten)]
     counts: Counts,
+    /// Pixels that are not proved: with their best values, with open ties, or copied from such.
+    not_proved: u64,
     skipped: Skipped,
     images: Vec<ImageStats>,
 }
@@ -72,7 +74,7 @@ struct ImageStats {
     path: String,
     width: u32,
     height: u32,
-    /// The arithmetic that gave its pixels.
+    /// The arithmetic that was asked for.
     precision: &'static str,
     bytes: u64,
     #[serde(rename = "trace_seconds", serialize_with = "seconds")]
@@ -85,6 +87,8 @@ struct ImageStats {
     total: Duration,
     #[serde(flatten)]
     counts: Counts,
+    /// Pixels that are not proved.
+    not_proved: u64,
     skipped: Skipped,
     /// The earlier `write`, from 0, of which it has all pixels, or all but those of the tiles that are traced.
     shares_with: Option<usize>,
@@ -125,6 +129,7 @@ impl SceneStats {
             encode: Duration::ZERO,
             save: Duration::ZERO,
             counts: Counts::default(),
+            not_proved: 0,
             skipped: Skipped::default(),
             images: Vec::new(),
         }
@@ -137,6 +142,7 @@ impl SceneStats {
             self.encode += report.encode_time;
             self.save += report.save_time;
             self.counts += report.counts;
+            self.not_proved += report.n_unproved();
             self.skipped.planned += report.savings;
             self.skipped.traced += report.spared;
             let (shares_with, traced_tiles) = shared(report.origin);
@@ -151,6 +157,7 @@ impl SceneStats {
                 save: report.save_time,
                 total: report.total_time,
                 counts: report.counts,
+                not_proved: report.n_unproved(),
                 skipped: Skipped { planned: report.savings, traced: report.spared },
                 shares_with,
                 traced_tiles,
@@ -185,6 +192,7 @@ impl SceneStats {
             settled_pixels,
             refined_pixels,
             exact_pixels,
+            unproved_pixels: _,
             ties,
             largest_bound: _,
         } = self.counts;
@@ -199,6 +207,7 @@ impl SceneStats {
             ("refined pixels", refined_pixels),
             ("exact pixels", exact_pixels),
             ("ties", ties),
+            ("not proved", self.not_proved),
         ];
         for (what, count) in counts {
             let _ = writeln!(table, "  {what:<15} {count:>14}");
