@@ -72,7 +72,8 @@ fn a_certificate_says_how_every_pixel_was_settled() {
         let count = |value: &Value| value.as_u64().expect("a number");
         let exact: u64 = pixels["exact"].as_array().expect("a list").iter().map(|one| count(&one["pixels"])).sum();
         let sum = count(&pixels["binary64"]) + count(&pixels["double_double"]) + count(&pixels["shared"]) + exact;
-        assert_eq!(sum, 3600);
+        assert_eq!((sum, count(&pixels["beyond_limit"])), (3600, 0));
+        assert_eq!(image["unproved"], serde_json::json!({ "pixels": 0, "beyond_limit": [] }));
         assert_eq!(precision == "exact", exact == 3600);
     }
 }
@@ -97,6 +98,7 @@ fn ties_are_in_the_certificate_with_their_places() {
     let document = certificate(&folder, "open.json");
     let image = &document["images"][0];
     assert_eq!(image["proved"], false);
+    assert_eq!(image["unproved"]["pixels"], image["ties"]["open_pixels"]);
     let listed = image["ties"]["listed"].as_array().expect("a list");
     let open: Vec<_> = listed.iter().filter(|tie| tie["open"]["order"].is_u64()).collect();
     assert!(!open.is_empty() && open.iter().all(|tie| tie["column"] == 20), "{open:?}");

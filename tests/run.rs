@@ -60,16 +60,68 @@ fn pixels_are_proved_unless_that_takes_too_long() {
     };
     assert_eq!(precision(&["--size", "60x60"]), ("certified".to_owned(), String::new()));
     assert_eq!(precision(&["--size", "60x60", "--precision", "f64"]).0, "f64");
-    // Lengths that differ so much that nothing but arbitrary precision holds, in every pixel of a large image.
+    assert_eq!(precision(&["--size", "8x6", "--precision", "certified"]), ("certified".to_owned(), String::new()));
+}
+
+/// A ball in a mirrored ball: after so many bounces nothing is proved but in thousands of bits.
+const MIRRORS: &str = "fov 60\nlight 1 1 1 0 0 -1\nsurface .01 0 0 .001 .001 .001 0 0 0 1 1\n\
+                       sphere 0 0 0 10\nsphere 0 0 -5 1\nwrite a.png\n";
+
+/// Lengths that differ so much that nothing but arbitrary precision holds, in every pixel of a large image.
+const FAR: &str =
+    "surface 1 1 1 0 0 0 0 0 0 1 0\nfov 60\nsphere 0 0 -4e-150 1e-150\nsphere 0 0 -4e150 1e150\nwrite a.png\n";
+
+#[test]
+fn pixels_that_are_not_proved_are_counted_whatever_is_asked_for() {
+    let folder = Folder::with_scene(FAR);
+    let limited = ["run", "a.cli", "--size", "540x540", "--stats=json"];
+    for more in [&[][..], &["--quiet"]] {
+        let call = folder.clisc(&[&limited[..], more].concat());
+        assert_code(&call, 0);
+        let stats: serde_json::Value = serde_json::from_str(&call.stdout).expect("a document");
+        let image = &stats["scenes"][0]["images"][0];
+        let n = image["not_proved"].as_u64().expect("a number");
+        assert!(n > 0 && n < 540 * 540 && image["precision"] == "certified", "{image}");
+        assert_says(&call.stderr, &format!("warning: `a.png`: {n} of 291600 pixels are not proved"));
+        assert_says(&call.stderr, "--precision certified takes the time");
+    }
+    folder.put("a.cli", MIRRORS);
+    let plain = folder.clisc(&["run", "a.cli", "-q", "--precision", "f64", "--max-level", "50", "--size", "9x9"]);
+    assert_code(&plain, 0);
+    assert_says(
+        &plain.stderr,
+        "of 81 pixels are not proved and have their best value; --precision certified proves more",
+    );
+    let table = folder.clisc(&["run", "a.cli", "--precision", "f32", "--size", "9x9", "--stats"]);
+    assert_code(&table, 0);
+    assert_says(&table.stdout, "not proved");
+    assert_eq!(table.stderr, "", "of a draft it is no news");
+}
+
+#[test]
+fn a_proof_can_be_required() {
+    let folder = Folder::with_scene(&scene("a.png"));
+    let args = ["run", "a.cli", "--size", "9x9", "--require-proof", "--quiet"];
+    let call = folder.clisc(&args);
+    assert_code(&call, 0);
+    assert_eq!(call.stderr, "");
+    for precision in ["f32", "f64"] {
+        folder.put("a.cli", MIRRORS);
+        let call = folder.clisc(&[&args[..], &["--precision", precision, "--max-level", "50"]].concat());
+        assert_code(&call, 1);
+        assert_says(&call.stderr, "pixels are not proved");
+        assert_eq!(folder.listing(), ["a.cli", "a.png"]);
+    }
+    // Two balls that are each other's mirror image: a tie that stays open is not proved either.
     folder.put(
         "a.cli",
-        "surface 1 1 1 0 0 0 0 0 0 1 0\nfov 60\nsphere 0 0 -4e-150 1e-150\nsphere 0 0 -4e150 1e150\nwrite a.png\n",
+        "fov 50\nlight 1 1 1 0 .5 -2\nsurface .1 .1 .1 0 0 0 0 0 0 1 .9\nsphere 0 .2 1 10\n\
+         surface .2 .2 .2 .5 .5 .5 0 0 0 1 0\nsphere -.3 .1 5 1\nsphere .3 .1 5 1\nwrite a.png\n",
     );
-    let (precision_of_far, warning) = precision(&["--size", "540x540"]);
-    assert_eq!(precision_of_far, "f64");
-    assert_says(&warning, "warning: `a.png` is made in f64");
-    assert_eq!(precision(&["--size", "540x540", "--precision", "f64"]), ("f64".to_owned(), String::new()));
-    assert_eq!(precision(&["--size", "8x6", "--precision", "certified"]), ("certified".to_owned(), String::new()));
+    let call = folder.clisc(&["run", "a.cli", "--size", "40x30", "--require-proof", "--quiet", "--stats=json"]);
+    assert_code(&call, 1);
+    assert_says(&call.stderr, "numbers in them are equal, or nearly so");
+    assert_says(&call.stdout, "\"outcome\": \"unproved\"");
 }
 
 #[test]

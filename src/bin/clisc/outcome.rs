@@ -11,6 +11,8 @@ pub enum Outcome {
     /// All went well.
     #[default]
     Fine,
+    /// An image has pixels that are not proved, and was to be proved.
+    Unproved,
     /// A scene has errors.
     SceneErrors,
     /// The command line or the world is at fault: a file that cannot be read, a full disk.
@@ -23,7 +25,7 @@ impl From<Outcome> for ExitCode {
     fn from(outcome: Outcome) -> Self {
         Self::from(match outcome {
             Outcome::Fine => 0,
-            Outcome::SceneErrors => 1,
+            Outcome::Unproved | Outcome::SceneErrors => 1,
             Outcome::Environment => 2,
             Outcome::Interrupted => interrupt::EXIT_CODE,
         })

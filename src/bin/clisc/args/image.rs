@@ -24,10 +24,10 @@ pub struct ImageArgs {
     /// The last level that is shaded: the eye ray has level 0, its reflection level 1, and so on; at most 65535.
     #[arg(long, value_name = "N", default_value_t = 8, value_parser = whole::<u32>(0..=Settings::MAX_LEVEL))]
     pub max_level: u32,
-    /// The arithmetic. certified: every pixel is proved, in arbitrary precision where need be; this is the default, as long
-    /// as an image takes no more exact work than ties along some of its rows and columns do, which depends on the scene
-    /// and the options alone. An image that takes more is made in f64, and a warning says so; asked for by name, certified
-    /// takes as long as it takes. f64: the right pixels, but where a scene needs numbers finer than double-double. exact:
+    /// The arithmetic. certified, the default: every pixel is proved, in arbitrary precision where need be, as long as that
+    /// takes no more work than ties along some rows and columns of the image do. That depends on the scene and the options
+    /// alone. Pixels beyond the limit have their best value, and a warning counts them; asked for by name, certified has no
+    /// limit. f64: no arbitrary precision; what double-double leaves open has its best value and is counted. exact:
     /// all of it in arbitrary precision, by another renderer; slow. f32: a faster draft; of 270,000 channels of a 300x300
     /// scene measured, at most 69 were wrong, mostly by one level. --stats counts the pixels that were drafted; several
     /// samples, many objects or the eye inside an object make it f64.

@@ -40,7 +40,11 @@ pub struct RunArgs {
     /// as long as that takes. For --precision certified and exact; saved whole or not at all.
     #[arg(long, value_name = "FILE")]
     pub certificate: Option<PathBuf>,
-    /// Print nothing but errors, and the --stats asked for.
+    /// End with exit code 1 if any pixel of any image is not proved: because its proof takes too long, because a tie stays
+    /// open, or because f32 or f64 was asked for. The images are saved all the same. For CI.
+    #[arg(long, conflicts_with = "dry_run")]
+    pub require_proof: bool,
+    /// Print nothing but errors, what is not proved, and the --stats asked for.
     #[arg(short, long)]
     pub quiet: bool,
     /// Check everything, render and save nothing.
@@ -63,6 +67,7 @@ Examples:
   clisc run i1.cli --no-skip=shadows,tiles       the same image without two of the shortcuts
   clisc run i1.cli --backend scalar              the same image without special instructions of the machine
   clisc run i1.cli --certificate proof.json      and what stands behind its pixels
+  clisc run i1.cli --require-proof --quiet       exit code 1 unless every pixel is proved
   clisc run - < i1.cli                           the scene from standard input
 
 A scene can write only below the folder of --out-dir. An image is saved whole or not at all.";

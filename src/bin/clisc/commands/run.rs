@@ -18,7 +18,7 @@ use clisc::diag::{Diagnostic, Severity, codes};
 use clisc::exec::{CancellationToken, ExecError, Options, WriteReport, check_names, execute};
 use clisc::ir::{self, Valid};
 use clisc::lint::{find_unseen, leave_out_allowed};
-use clisc::plan::{ExactWork, Settings};
+use clisc::plan::{ExactWork, Precision, Settings};
 use clisc::source::Source;
 use clisc::trace::kernels::Backend;
 
@@ -171,6 +171,9 @@ impl Session<'_> {
         stats.add_writes(&place, &reports);
         self.certificate.add_writes(path, &place, &reports);
         stats.outcome = match ended {
+            Ok(()) if self.args.require_proof && reports.iter().any(|report| report.n_unproved() > 0) => {
+                Outcome::Unproved
+            }
             Ok(()) => Outcome::Fine,
             Err(error) => self.tell(&source, &place, error)?,
         };
@@ -287,15 +290,32 @@ impl Session<'_> {
         Ok(())
     }
 
-    /// Warns of images that would have taken more exact work than is done unasked.
+    /// Warns of images with pixels that are not proved, whether or not other warnings are asked for; of drafts that is no news.
     fn warn_of_unproved(&self, place: &Place, reports: &[WriteReport]) {
-        for report in reports.iter().filter(|report| report.precision != self.settings.precision && !self.args.quiet) {
+        let is_draft = self.settings.precision == Precision::F32 && !self.args.require_proof;
+        for report in reports.iter().filter(|report| report.n_unproved() > 0 && !is_draft) {
             let path = place.shown(&report.name);
-            print::to_stderr(&format!(
-                "warning: `{}` is made in f64: to prove its pixels takes long; --precision certified does, and \
-                 --precision f64 does not try\n",
-                path.display()
-            ));
+            let (n, all) = (report.n_unproved(), report.n_pixels());
+            let are = if n == 1 { "is" } else { "are" };
+            let why = self.why_unproved(report);
+            print::to_stderr(&format!("warning: `{}`: {n} of {all} pixels {are} not proved{why}\n", path.display()));
+        }
+    }
+
+    /// Says why pixels of an image are not proved, and what to do about it.
+    fn why_unproved(&self, report: &WriteReport) -> &'static str {
+        let is_limited = self.settings.exact_work == ExactWork::Limited;
+        match self.settings.precision {
+            Precision::F32 => ": f32 makes drafts",
+            Precision::F64 => " and have their best value; --precision certified proves more",
+            _ if report.unproved.n_pixels == 0 => {
+                ": numbers in them are equal, or nearly so; they are drawn as equal, and --certificate lists them"
+            }
+            _ if is_limited => {
+                " and have their best value: their proof takes long; --precision certified takes the time, and \
+                 --precision f64 does not try"
+            }
+            _ => " and have their best value",
         }
     }
 }

@@ -8,6 +8,7 @@ use std::path::Path;
 use clisc::exact::TiePlace;
 use clisc::exec::{Proof, WriteReport};
 use clisc::plan::{Part, SampleAt, Settings};
+use clisc::trace;
 use serde::Serialize;
 
 use crate::disk::Place;
@@ -46,8 +47,9 @@ struct ImageCertificate {
     bytes: u64,
     /// CRC-32 of the file, eight hexadecimal digits.
     crc32: String,
-    /// Whether every pixel is proved: no tie is open.
+    /// Whether every pixel is proved: no tie is open, and none is beyond the limit of exact work.
     proved: bool,
+    unproved: UnprovedPixels,
     pixels: PixelCounts,
     /// In levels.
     largest_bound: f64,
@@ -61,6 +63,21 @@ struct PixelCounts {
     double_double: u64,
     exact: Vec<ExactPixels>,
     shared: u64,
+    beyond_limit: u64,
+}
+
+/// The pixels that are not proved.
+#[derive(Debug, Serialize)]
+struct UnprovedPixels {
+    pixels: u64,
+    /// The first of them that are beyond the limit, row by row; those with open ties stand among the ties.
+    beyond_limit: Vec<PixelPlace>,
+}
+
+#[derive(Debug, Serialize)]
+struct PixelPlace {
+    column: u32,
+    row: u32,
 }
 
 /// The pixels that one precision settled.
@@ -124,6 +141,10 @@ impl Certificate {
                     bytes: report.n_bytes,
                     crc32: format!("{crc32:08x}"),
                     proved: proof.is_complete(),
+                    unproved: UnprovedPixels {
+                        pixels: report.n_unproved(),
+                        beyond_limit: report.unproved.listed.iter().map(pixel_place).collect(),
+                    },
                     pixels: pixel_counts(proof),
                     largest_bound: proof.largest_bound,
                     ties: TieList {
@@ -149,7 +170,12 @@ fn pixel_counts(proof: &Proof) -> PixelCounts {
         double_double: proof.n_double_double,
         exact: proof.exact.n_pixels.iter().map(|(&bits, &pixels)| ExactPixels { bits, pixels }).collect(),
         shared: proof.n_shared,
+        beyond_limit: proof.n_beyond_limit,
     }
+}
+
+fn pixel_place(&trace::Place { column, row }: &trace::Place) -> PixelPlace {
+    PixelPlace { column, row }
 }
 
 fn tie(place: &TiePlace) -> Tie {
