@@ -111,7 +111,7 @@ impl Div for Ball106 {
 }
 
 impl Real for Ball106 {
-    const IS_DOUBLE_DOUBLE: bool = true;
+    const IS_FINE: bool = true;
 
     fn exact(value: f64) -> Self {
         Self { value: DoubleDouble::from(value), error: 0.0 }

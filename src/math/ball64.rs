@@ -108,7 +108,7 @@ impl Div for Ball64 {
 }
 
 impl Real for Ball64 {
-    const IS_DOUBLE_DOUBLE: bool = false;
+    const IS_FINE: bool = false;
 
     #[inline]
     fn exact(value: f64) -> Self {

@@ -46,13 +46,19 @@ pub trait Real:
     + 'static
 {
     /// Whether the middle holds more than binary64 can.
-    const IS_DOUBLE_DOUBLE: bool;
+    const IS_FINE: bool;
 
     /// Makes a number that is known exactly.
     fn exact(value: f64) -> Self;
 
     /// Makes the number that a double-double with this relative error stands for.
     fn rounded(value: super::DoubleDouble, relative_error: f64) -> Self;
+
+    /// Returns tan(`degrees`·π/360), the tangent of half an angle in 0…180.
+    fn tan_half_degrees(degrees: f64) -> Self {
+        let (tangent, relative_error) = super::tan_half_degrees(degrees);
+        Self::rounded(tangent, relative_error)
+    }
 
     /// Makes the number of which nothing is known but that it lies in 0…1.
     fn unit_interval() -> Self;

@@ -85,6 +85,11 @@ fn double_double_bounds_hold() {
 }
 
 #[test]
+fn bounds_of_long_numbers_hold() {
+    bounds_hold::<Long<4>>(|ball| long::big_middle(&ball), libm::exp2(-250.0));
+}
+
+#[test]
 fn powers_lie_within_their_bounds() {
     let mut stream = Stream::new(11);
     let exponents = [0.0, 0.5, 1.0, 1.5, 2.0, 20.0, 33.25, 1000.0, 1e6, 1e6 + 0.5];
@@ -195,6 +200,7 @@ fn zeros_stay_exact<R: Real>() {
 fn exact_zeros_stay_exact() {
     zeros_stay_exact::<Ball64>();
     zeros_stay_exact::<Ball106>();
+    zeros_stay_exact::<Long<4>>();
 }
 
 #[test]

@@ -56,7 +56,7 @@ const VAGUE: f64 = 1.0 / 4096.0;
 /// # Errors
 /// [`Doubt`] when finer arithmetic can look them up.
 fn unless_vague<R: Real>(looks_up: bool, all: Candidates<'_>) -> Result<Candidates<'_>, Doubt> {
-    if looks_up && !R::IS_DOUBLE_DOUBLE && all.len() > MANY { Err(Doubt) } else { Ok(all) }
+    if looks_up && !R::IS_FINE && all.len() > MANY { Err(Doubt) } else { Ok(all) }
 }
 
 /// Lists what a reflected ray may meet; `unless_found` when the plan does not look it up.
@@ -72,7 +72,7 @@ pub fn along<'a, R: Real>(
     let plain_ray = ray.plain();
     let PlainRay { origin, dir, origin_error, dir_error, .. } = plain_ray;
     let speed = dir.into_iter().fold(0.0, |speed: f64, d| speed.max(d.abs()));
-    if !R::IS_DOUBLE_DOUBLE && dir_error > VAGUE * speed {
+    if !R::IS_FINE && dir_error > VAGUE * speed {
         return unless_vague::<R>(plan.looks_along(), unless_found);
     }
     found.clear();

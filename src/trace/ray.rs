@@ -40,9 +40,9 @@ impl<R: Real> Ray<R> {
         // The middle of a double-double is rounded once more to binary64.
         let rounding = |v: Vector<R>| {
             let largest = middle(v).into_iter().fold(0.0, |a: f64, b| a.max(b.abs()));
-            if R::IS_DOUBLE_DOUBLE { largest * f64::EPSILON } else { 0.0 }
+            if R::IS_FINE { largest * f64::EPSILON } else { 0.0 }
         };
-        let y_rounding = if R::IS_DOUBLE_DOUBLE { self.origin.y.value().abs() * f64::EPSILON } else { 0.0 };
+        let y_rounding = if R::IS_FINE { self.origin.y.value().abs() * f64::EPSILON } else { 0.0 };
         PlainRay {
             origin: middle(self.origin),
             dir: middle(self.dir),

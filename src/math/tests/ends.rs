@@ -55,6 +55,19 @@ impl Ball for Ball106 {
     }
 }
 
+impl Ball for Long<4> {
+    /// Some bits of the 256 are lost to limbs that are cut, and more in series.
+    const ROUNDOFF: f64 = 1.0 / (1_u128 << 120) as f64 / (1_u128 << 120) as f64;
+
+    fn wide(middle: f64, relative: f64, tail: f64) -> Self {
+        Self::rounded(DoubleDouble::sum(middle, middle * tail * f64::EPSILON), relative)
+    }
+
+    fn big_middle(self) -> Big {
+        crate::math::long::big_middle(&self).with_precision(PRECISION_BITS).value()
+    }
+}
+
 fn magnitude(x: &Big) -> Big {
     if *x < big(0.0) { -x.clone() } else { x.clone() }
 }
@@ -139,6 +152,11 @@ fn operations_on_double_double_hold_the_ends() {
     operations_fit::<Ball106>();
 }
 
+#[test]
+fn operations_of_long_numbers_hold_the_ends() {
+    operations_fit::<Long<4>>();
+}
+
 fn functions_fit<B: Ball>() {
     let mut stream = Stream::new(29);
     for _ in 0..500 {
@@ -176,6 +194,11 @@ fn functions_of_double_double_hold_the_ends() {
     functions_fit::<Ball106>();
 }
 
+#[test]
+fn functions_of_long_numbers_hold_the_ends() {
+    functions_fit::<Long<4>>();
+}
+
 /// Raises to a power; what lies below 0 counts as 0.
 fn big_power(x: Big, exponent: f64) -> Big {
     match exponent {
@@ -202,6 +225,7 @@ fn powers_of_the_wide_fit<B: Ball>() {
 fn powers_of_wide_balls_hold_the_ends() {
     powers_of_the_wide_fit::<Ball64>();
     powers_of_the_wide_fit::<Ball106>();
+    powers_of_the_wide_fit::<Long<4>>();
 }
 
 fn powers_fit<B: Ball>() {
@@ -235,6 +259,11 @@ fn powers_of_double_double_hold_the_ends() {
     powers_fit::<Ball106>();
 }
 
+#[test]
+fn powers_of_long_numbers_hold_the_ends() {
+    powers_fit::<Long<4>>();
+}
+
 /// Floors of balls about whole numbers and between them.
 fn floors_fit<B: Ball>() {
     let mut stream = Stream::new(37);
@@ -258,6 +287,7 @@ fn floors_fit<B: Ball>() {
 fn floors_hold_for_the_ends() {
     floors_fit::<Ball64>();
     floors_fit::<Ball106>();
+    floors_fit::<Long<4>>();
 }
 
 /// Numbers that are rounded to the type.
@@ -275,6 +305,7 @@ fn rounded_fit<B: Ball>() {
 fn what_is_rounded_holds_the_ends() {
     rounded_fit::<Ball64>();
     rounded_fit::<Ball106>();
+    rounded_fit::<Long<4>>();
 }
 
 fn powers_of_points_fit<B: Ball>(widest: f64) {
@@ -306,6 +337,7 @@ fn powers_of_points_fit<B: Ball>(widest: f64) {
 fn powers_of_points_hold_the_ends() {
     powers_of_points_fit::<Ball64>(-12.0);
     powers_of_points_fit::<Ball106>(-12.0);
+    powers_of_points_fit::<Long<4>>(-12.0);
 }
 
 /// Products and quotients too small for binary64: 0 or subnormal, but the bound is not.
@@ -333,4 +365,5 @@ fn what_underflows_is_within_the_bound() {
     }
     check::<Ball64>(Ball::big_middle);
     check::<Ball106>(Ball::big_middle);
+    check::<Long<4>>(Ball::big_middle);
 }
