@@ -71,7 +71,11 @@ fn a_certificate_says_how_every_pixel_was_settled() {
         let pixels = &image["pixels"];
         let count = |value: &Value| value.as_u64().expect("a number");
         let exact: u64 = pixels["exact"].as_array().expect("a list").iter().map(|one| count(&one["pixels"])).sum();
-        let sum = count(&pixels["binary64"]) + count(&pixels["double_double"]) + count(&pixels["shared"]) + exact;
+        let sum = count(&pixels["binary64"])
+            + count(&pixels["double_double"])
+            + count(&pixels["long"])
+            + count(&pixels["shared"])
+            + exact;
         assert_eq!((sum, count(&pixels["beyond_limit"])), (3600, 0));
         assert_eq!(image["unproved"], serde_json::json!({ "pixels": 0, "beyond_limit": [] }));
         assert_eq!(precision == "exact", exact == 3600);

@@ -52,7 +52,7 @@ fn assert_is_certified(title: &str, text: &str, settings: &Settings) {
     assert!(wrong.is_empty(), "{title}: {} pixels are wrong\n{:?}\n{text}", wrong.len(), &wrong[..wrong.len().min(3)]);
 
     let proof = report.proof.expect("everything is proved");
-    let n_pixels = proof.n_binary64 + proof.n_double_double + proof.exact.n_pixels() + proof.n_shared;
+    let n_pixels = proof.n_binary64 + proof.n_double_double + proof.n_long + proof.exact.n_pixels() + proof.n_shared;
     assert_eq!(n_pixels, exact.len() as u64, "{title}");
     assert!(proof.largest_bound < 0.5, "{title}: a bound of {} levels", proof.largest_bound);
     // Every tie of the image is a tie to `exact` too; the tracer may prove a pixel that `exact` leaves open, and touch a wall
@@ -87,6 +87,30 @@ fn every_scene_under_stress_is_certified() {
         }
         let text = fs::read_to_string(&path).expect("a scene in UTF-8");
         assert_is_certified(&path.display().to_string(), &text, &sized(20, 15));
+    }
+}
+
+/// Mirrors so deep, and lights so bright, that double-double decides no pixel of some areas.
+const BEYOND_DOUBLE_DOUBLE: [(&str, u32); 2] = [
+    (
+        "light 1 1 1 0 0 -1\nsurface .01 0 0 .001 .001 .001 0 0 0 1 1\nsphere 0 0 0 10\nsphere 0 0 -5 1\nwrite i.png\n",
+        50,
+    ),
+    (
+        "light 1e100 1e100 1e100 0 5 0\nlight -1e100 -1e100 -1e100 0 5 0\nsurface .1 .1 .1 1 1 1 0 0 0 0 0\n\
+         sphere 0 0 -4 1\nwrite i.png\n",
+        8,
+    ),
+];
+
+#[test]
+fn what_double_double_leaves_open_is_proved_without_arbitrary_precision() {
+    for (text, max_level) in BEYOND_DOUBLE_DOUBLE {
+        let settings = Settings { max_level, exact_work: ExactWork::Limited, ..sized(12, 12) };
+        assert_is_certified("beyond double-double", text, &settings);
+        let (report, _) = run(&compile(text), &settings).pop().expect("an image");
+        let proof = report.proof.expect("everything is proved");
+        assert!(proof.n_long > 12 && proof.exact.n_pixels() == 0 && proof.is_complete(), "{proof:?}");
     }
 }
 
@@ -156,7 +180,7 @@ fn shared_pixels_are_counted_and_their_ties_are_listed() {
     let images = run(&compile(plain), &sized(200, 150));
     let proof = images[1].0.proof.as_ref().expect("everything is proved");
     assert!(proof.n_shared > 0, "{proof:?}");
-    let all = proof.n_binary64 + proof.n_double_double + proof.exact.n_pixels() + proof.n_shared;
+    let all = proof.n_binary64 + proof.n_double_double + proof.n_long + proof.exact.n_pixels() + proof.n_shared;
     assert_eq!(all, 200 * 150);
 
     let tied = format!("{TOUCHED}write a.png\nsphere 1.6 0 -5 .1\nwrite b.png\n");
@@ -206,7 +230,14 @@ fn in_f64(settings: &Settings) -> Settings {
 /// Checks that the pixels of a proof add up to the image, and returns how many are beyond the limit.
 fn n_beyond_limit(report: &WriteReport) -> u64 {
     let proof = report.proof.as_ref().expect("every image has one");
-    let all = [proof.n_binary64, proof.n_double_double, proof.exact.n_pixels(), proof.n_beyond_limit, proof.n_shared];
+    let all = [
+        proof.n_binary64,
+        proof.n_double_double,
+        proof.n_long,
+        proof.exact.n_pixels(),
+        proof.n_beyond_limit,
+        proof.n_shared,
+    ];
     assert_eq!(all.into_iter().sum::<u64>(), report.n_pixels());
     assert_eq!(report.unproved.n_pixels, proof.n_beyond_limit);
     assert!(report.unproved.listed.is_sorted());

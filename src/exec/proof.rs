@@ -12,6 +12,8 @@ pub struct Proof {
     pub n_binary64: u64,
     /// Pixels that double-double and its bounds proved.
     pub n_double_double: u64,
+    /// Pixels that long numbers of up to 1024 bits and their bounds proved.
+    pub n_long: u64,
     /// Pixels that arbitrary precision made, by their bits, and all ties: every pixel but those with open ties is proved.
     pub exact: Record,
     /// Pixels whose exact work was more than there may be: they have their best values.
@@ -34,10 +36,12 @@ impl Proof {
             Origin::Traced | Origin::CopiedFrom { .. } => 0,
         };
         let n_double_double = report.counts.refined_pixels;
+        let n_long = report.counts.long_pixels;
         let n_beyond_limit = report.unproved.n_pixels;
         Some(Self {
-            n_binary64: report.n_pixels() - n_shared - n_double_double - exact.n_pixels() - n_beyond_limit,
+            n_binary64: report.n_pixels() - n_shared - n_double_double - n_long - exact.n_pixels() - n_beyond_limit,
             n_double_double,
+            n_long,
             n_beyond_limit,
             largest_bound: exact.largest_error.max(report.counts.largest_bound),
             exact,

@@ -1,6 +1,6 @@
 //! Eye rays.
 
-use crate::math::{Real, Vector, tan_half_degrees};
+use crate::math::{Long, Real, Vector};
 use crate::trace::ray::Ray;
 use crate::trace::touch::{Aim, HalfTangent};
 
@@ -17,9 +17,8 @@ impl<R: Real> Camera<R> {
     /// Makes the camera of a vertical field of view in degrees for places counted so that half the image's height has
     /// `steps_per_half_height` steps.
     pub fn new(fov_deg: f64, steps_per_half_height: u32) -> Self {
-        let (k, relative_error) = tan_half_degrees(fov_deg);
         Self {
-            step: R::rounded(k, relative_error) / R::exact(f64::from(steps_per_half_height)),
+            step: R::tan_half_degrees(fov_deg) / R::exact(f64::from(steps_per_half_height)),
             steps_per_half_height,
             half_tangent: HalfTangent::of_fov(fov_deg),
         }
@@ -42,5 +41,12 @@ impl<R: Real> Camera<R> {
             leaving: None,
             light: None,
         }
+    }
+}
+
+impl<const N: usize> Camera<Long<N>> {
+    /// Returns the camera whose rays are known to so many bits.
+    pub fn shortened(&self, bits: u32) -> Self {
+        Self { step: self.step.shortened(bits), ..*self }
     }
 }

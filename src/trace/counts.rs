@@ -27,6 +27,8 @@ pub struct Counts {
     pub settled_pixels: u64,
     /// Pixels that binary64 could not decide and double-double did.
     pub refined_pixels: u64,
+    /// Pixels that double-double could not decide either and long numbers did.
+    pub long_pixels: u64,
     /// The largest bound on the error of a channel that was rounded to its byte, in levels, where bounds are kept.
     pub largest_bound: f64,
     /// Pixels that were made in arbitrary precision.
@@ -93,6 +95,7 @@ impl AddAssign for Counts {
         self.draft_pixels += other.draft_pixels;
         self.settled_pixels += other.settled_pixels;
         self.refined_pixels += other.refined_pixels;
+        self.long_pixels += other.long_pixels;
         self.largest_bound = self.largest_bound.max(other.largest_bound);
         self.exact_pixels += other.exact_pixels;
         self.unproved_pixels += other.unproved_pixels;

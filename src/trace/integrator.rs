@@ -21,6 +21,8 @@ pub struct Integrator<'a, 'p, R> {
     pub(super) found: ObjectLists,
     /// The hits of the ray so far, outermost first.
     bounces: Vec<Bounce<R>>,
+    /// The least level at which a ray of the pixel at hand ended in doubt.
+    pub given_up: Option<u32>,
 }
 
 /// What a hit adds to the colour of its reflected ray, and how much of that it takes.
@@ -41,7 +43,14 @@ enum End<R> {
 impl<'a, 'p, R: Real> Integrator<'a, 'p, R> {
     /// Makes an integrator that has counted nothing yet.
     pub fn new(plan: &'a Plan<'p>) -> Self {
-        Self { plan, judge: Judge::default(), kept: Vec::new(), found: ObjectLists::default(), bounces: Vec::new() }
+        Self {
+            plan,
+            judge: Judge::default(),
+            kept: Vec::new(),
+            found: ObjectLists::default(),
+            bounces: Vec::new(),
+            given_up: None,
+        }
     }
 
     /// Returns the colour of an eye ray, each channel clamped to 0…1.
@@ -66,8 +75,13 @@ impl<'a, 'p, R: Real> Integrator<'a, 'p, R> {
                     ray = reflected;
                     among = self.plan.mirrored_by(mirror);
                 }
-                Err(doubt) if level == 0 => return Err(doubt),
-                Err(Doubt) => break Vector::exact(glam::DVec3::ZERO).map(|_: R| R::unit_interval()),
+                Err(doubt) => {
+                    self.given_up = Some(self.given_up.map_or(level as u32, |least| least.min(level as u32)));
+                    if level == 0 {
+                        return Err(doubt);
+                    }
+                    break Vector::exact(glam::DVec3::ZERO).map(|_: R| R::unit_interval());
+                }
             }
         };
         let through = |color: Vector<R>, bounce: &Bounce<R>| {

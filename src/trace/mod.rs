@@ -3,8 +3,9 @@
 //! Most pixels are traced by `wide`, many at once in plain binary64, where everything is decided beyond bounds that are
 //! known beforehand. Every other pixel is traced in binary64 with a running bound on every number ([`Ball64`]). If each
 //! comparison on its way and the rounding of its channels are decided by the bounds, it is proved. If not, it is traced
-//! again in double-double ([`Ball106`]); what that cannot decide either is left to a [`Referee`], and what that does not settle
-//! gets its best value (`best`) and is counted. The code is the same for all, generic over [`Real`].
+//! again in double-double ([`Ball106`]), and in numbers of some hundred bits (`long`) if it is to be certified; what that
+//! cannot decide either is left to a [`Referee`], and what that does not settle gets its best value (`best`) and is counted.
+//! The code is the same for all, generic over [`Real`].
 //!
 //! Reading order: [`Tracer::render_rows`], `pixel`, `integrator`, `intersect`, `shade`, `occlude`. `reject` keeps most
 //! primitives away from them.
@@ -20,6 +21,7 @@ mod integrator;
 mod intersect;
 mod judge;
 pub mod kernels;
+mod long;
 mod look_up;
 mod occlude;
 mod pixel;
@@ -51,6 +53,7 @@ use crate::trace::camera::Camera;
 use crate::trace::draft::Draft;
 use crate::trace::integrator::Integrator;
 use crate::trace::kernels::Backend;
+use crate::trace::long::{LongCameras, LongStages};
 use crate::trace::pixel::Sampling;
 use crate::trace::wide::Wide;
 
@@ -61,6 +64,7 @@ pub struct Tracer<'p> {
     sampling: Sampling,
     camera: Camera<Ball64>,
     fine_camera: Camera<Ball106>,
+    long_cameras: OnceLock<LongCameras>,
     draft: Option<Draft>,
     wide: Option<Wide>,
     upon: Option<Upon<'p>>,
@@ -108,6 +112,7 @@ impl<'p> Tracer<'p> {
             wide: wide_backend.and_then(|backend| Wide::new(&plan, camera.step(), backend)),
             camera,
             fine_camera: Camera::new(plan.fov_deg, sampling.steps_per_half_height()),
+            long_cameras: OnceLock::new(),
             sampling,
             plan,
             upon: None,
@@ -228,6 +233,10 @@ impl<'p> Tracer<'p> {
         self.best.get_or_init(|| BestValues::new(self.plan.view, &self.plan.settings))
     }
 
+    fn long_cameras(&self) -> &LongCameras {
+        self.long_cameras.get_or_init(|| LongCameras::new(self.plan.fov_deg, self.sampling.steps_per_half_height()))
+    }
+
     /// Tells whether a pixel has to be traced.
     fn is_new(&self, column: u32, row: u32) -> bool {
         let changed = self.upon.as_ref().and_then(|upon| upon.changed.as_ref());
@@ -316,6 +325,7 @@ struct Settler<'a, 'p> {
     tracer: &'a Tracer<'p>,
     coarse: Integrator<'a, 'p, Ball64>,
     fine: Integrator<'a, 'p, Ball106>,
+    long: LongStages<'a, 'p>,
     /// What none of them decides.
     open: Vec<Place>,
     /// What is done for that.
@@ -328,6 +338,7 @@ impl<'a, 'p> Settler<'a, 'p> {
             tracer,
             coarse: Integrator::new(&tracer.plan),
             fine: Integrator::new(&tracer.plan),
+            long: LongStages::new(&tracer.plan),
             open: Vec::new(),
             counts: Counts::default(),
         }
@@ -354,6 +365,13 @@ impl<'a, 'p> Settler<'a, 'p> {
         if let Ok(bytes) = pixel::settle(&mut self.fine, &tracer.fine_camera, &pixel, among) {
             self.tell_touches(column, row, self.fine.judge.touches);
             self.fine.judge.counts.refined_pixels += 1;
+            return Some(bytes);
+        }
+        if tracer.referee.is_some()
+            && let Some(bytes) = self.long.settle(tracer.long_cameras(), &pixel, among, self.fine.given_up)
+        {
+            self.tell_touches(column, row, self.long.touches);
+            self.counts.long_pixels += 1;
             return Some(bytes);
         }
         None
@@ -414,6 +432,7 @@ impl<'a, 'p> Settler<'a, 'p> {
         let mut counts = self.counts;
         counts += self.coarse.judge.counts;
         counts += self.fine.judge.counts;
+        counts += self.long.counts();
         counts
     }
 }

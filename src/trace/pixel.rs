@@ -95,6 +95,7 @@ pub fn mean<R: Real>(
     among: Candidates<'_>,
 ) -> Result<Vector<R>, Doubt> {
     integrator.judge.touches = Touches::default();
+    integrator.given_up = None;
     let n = i64::from(pixel.samples);
     let mut sum = Vector::exact(glam::DVec3::ZERO);
     for row in 0..n {

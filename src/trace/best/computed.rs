@@ -159,7 +159,7 @@ impl Div for Computed {
 }
 
 impl Real for Computed {
-    const IS_DOUBLE_DOUBLE: bool = true;
+    const IS_FINE: bool = true;
 
     fn exact(value: f64) -> Self {
         Self::new(DoubleDouble::from(value), 0, 0.0, value.abs())

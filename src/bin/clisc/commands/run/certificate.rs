@@ -61,6 +61,7 @@ struct ImageCertificate {
 struct PixelCounts {
     binary64: u64,
     double_double: u64,
+    long: u64,
     exact: Vec<ExactPixels>,
     shared: u64,
     beyond_limit: u64,
@@ -168,6 +169,7 @@ fn pixel_counts(proof: &Proof) -> PixelCounts {
     PixelCounts {
         binary64: proof.n_binary64,
         double_double: proof.n_double_double,
+        long: proof.n_long,
         exact: proof.exact.n_pixels.iter().map(|(&bits, &pixels)| ExactPixels { bits, pixels }).collect(),
         shared: proof.n_shared,
         beyond_limit: proof.n_beyond_limit,
