@@ -19,7 +19,7 @@ pub(super) fn multiply(a: &[u64], b: &[u64], product: &mut [u64]) -> bool {
             b
         } else {
             // The lower half of this one lies beyond.
-            carry = (u128::from(a) * u128::from(b[room - 1]) >> 64) as u64;
+            carry = ((u128::from(a) * u128::from(b[room - 1])) >> 64) as u64;
             &b[..room - 1]
         };
         let target = &mut product[i + 1..=i + within.len()];
