@@ -66,6 +66,18 @@ fn render_target_accepts_the_corpus() {
 }
 
 #[test]
+fn fuzz_targets_share_what_the_root_compiles() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let [ours, theirs] =
+        ["Cargo.toml", "fuzz/Cargo.toml"].map(|path| fs::read_to_string(root.join(path)).expect("a manifest"));
+    let (_, packages) = theirs.split_once("[profile.dev.package]\n").expect("the table");
+    let (packages, _) = packages.split_once("\n[").expect("a table behind it");
+    for line in packages.lines() {
+        assert!(ours.contains(&format!("{line}\n")), "{line:?} would compile a dependency twice");
+    }
+}
+
+#[test]
 fn every_target_is_replayed_here() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let this = fs::read_to_string(root.join(file!())).expect("this file");
