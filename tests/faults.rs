@@ -7,11 +7,12 @@
 mod support;
 
 use std::fs;
-use std::io::{self, Read, Write};
+use std::io::{self, ErrorKind, Read, Write};
 use std::os::unix::fs::PermissionsExt;
 use std::os::unix::process::CommandExt;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
+use std::thread;
 use std::time::{Duration, Instant};
 
 use crate::support::{Call, Folder, scene};
@@ -95,7 +96,13 @@ fn clisc_without_privileges(folder: &Folder, args: &[&str]) -> Call {
     if fs::write(probe.join("file"), "").is_ok() {
         command.uid(NOBODY).gid(NOBODY);
     }
-    command.output().unwrap().into()
+    loop {
+        match command.output() {
+            // Another test has started a process while the command was being copied, which still holds it open for writing.
+            Err(error) if error.kind() == ErrorKind::ExecutableFileBusy => thread::sleep(Duration::from_millis(10)),
+            output => return output.unwrap().into(),
+        }
+    }
 }
 
 #[test]

@@ -75,8 +75,8 @@ fn a_comment_below_another_stays_below_it() {
         "fov 60  # one\n        # two\n# not below\n# nor this\n",
     );
     check_format(
-        "write \"a\tb.png\" # one\n                       # two\n",
-        "write \"a\tb.png\"  # one\n                        # two\n",
+        "write \"a b.png\" # one\n                # two\n",
+        "write \"a b.png\"  # one\n                 # two\n",
     );
 }
 
