@@ -115,6 +115,16 @@ fn what_double_double_leaves_open_is_proved_without_arbitrary_precision() {
 }
 
 #[test]
+fn a_row_of_deep_mirrors_takes_no_more_than_it_may() {
+    let (text, max_level) = BEYOND_DOUBLE_DOUBLE[0];
+    let settings = Settings { max_level, ..limited(800, 2) };
+    let images = run_on_any_threads(&compile(text), &settings);
+    let (report, _) = &images[0];
+    let proof = report.proof.as_ref().expect("a proof");
+    assert!(proof.n_long > 0 && n_beyond_limit(report) > 0, "{proof:?}");
+}
+
+#[test]
 fn what_the_tracer_cannot_scale_is_left_to_exact() {
     // The speck is 10⁻³⁰⁰ of the ball behind it: scaled to its size it would be nothing.
     let text = format!("{SPECK}write i.png\n");

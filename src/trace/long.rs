@@ -7,15 +7,18 @@
 //! takes, and somewhat more. Where that is more than there are, or a wider arithmetic gives up at the same level as the one
 //! before, the doubt is not one of precision, and the pixel is left to the referee: it is a tie as a rule.
 //!
-//! All of this depends on the pixel alone.
+//! # How much in all
+//! A whole image of deep mirrors can need these stages in every pixel. Where work is limited, each row of pixels may take
+//! [`ROW_WORK`], spent from the left; the pixels behind that are left to the referee. So what is settled here depends on the scene
+//! and the settings alone, not on threads, time, or how an image is cut into bands.
 
 use crate::math::{Long, Real};
 use crate::plan::{Candidates, ExactWork, Plan};
-use crate::trace::Counts;
 use crate::trace::camera::Camera;
 use crate::trace::integrator::Integrator;
 use crate::trace::pixel::{self, Pixel};
 use crate::trace::touch::Touches;
+use crate::trace::{Counts, Tracer};
 
 /// Limbs of the narrow stage, and its bits.
 const N_NARROW: usize = 4;
@@ -27,6 +30,13 @@ const WIDE_BITS: u32 = 64 * N_WIDE as u32;
 
 /// The most bits where work is limited: with as many a pixel takes some fifteen times as long as in double-double.
 const LIMITED_BITS: u32 = 512;
+
+/// What a row of pixels may take where work is limited: a test of a ray against an object takes the square of its limbs.
+/// At most a fifth of a second of one core or so: as much as a ball in a mirrored room takes at 300 columns and 20 levels.
+const ROW_WORK: u64 = 1 << 21;
+
+/// No band of rows that is traced at once, tile by tile, has more.
+const MAX_ROWS: usize = Tracer::TILE_ROWS as usize;
 
 /// The bits of double-double.
 const FINE_BITS: u32 = 106;
@@ -55,6 +65,7 @@ pub struct LongStages<'a, 'p> {
     wide: Integrator<'a, 'p, Long<N_WIDE>>,
     max_level: u32,
     max_bits: u32,
+    row_work: RowWork,
     /// What was proved equal in the last pixel that was settled.
     pub touches: Touches,
 }
@@ -70,15 +81,20 @@ impl<'a, 'p> LongStages<'a, 'p> {
                 ExactWork::Limited => LIMITED_BITS,
                 ExactWork::Unlimited => WIDE_BITS,
             },
+            row_work: RowWork::new(match plan.settings.exact_work {
+                ExactWork::Limited => ROW_WORK,
+                ExactWork::Unlimited => u64::MAX,
+            }),
             touches: Touches::default(),
         }
     }
 
     /// Returns the bytes of a pixel that double-double has given up at a level, or at the rounding of its channels; `None` if
-    /// these stages leave it open too.
+    /// these stages leave it open too, or its row has taken what it may. The pixels of a row come from the left.
     pub fn settle(
         &mut self,
         cameras: &LongCameras,
+        row: u32,
         pixel: &Pixel,
         among: Candidates<'_>,
         given_up: Option<u32>,
@@ -90,11 +106,16 @@ impl<'a, 'p> LongStages<'a, 'p> {
         };
         let mut next = tried.first(self.max_level).and_then(within_reach);
         while let Some(bits) = next {
+            if self.row_work.is_spent(row) {
+                return None;
+            }
+            let n_tests = self.n_tests();
             let answer = if bits <= NARROW_BITS {
                 attempt(&mut self.narrow, &cameras.narrow, pixel, among)
             } else {
                 attempt(&mut self.wide, &cameras.wide.shortened(bits), pixel, among)
             };
+            self.row_work.spend(row, (self.n_tests() - n_tests) * u64::from(bits.div_ceil(64)).pow(2));
             match answer {
                 Ok((bytes, touches)) => {
                     self.touches = touches;
@@ -108,6 +129,10 @@ impl<'a, 'p> LongStages<'a, 'p> {
             }
         }
         None
+    }
+
+    fn n_tests(&self) -> u64 {
+        self.narrow.judge.counts.tests + self.wide.judge.counts.tests
     }
 
     /// Returns what has been done so far.
@@ -128,6 +153,38 @@ fn attempt<R: Real>(
     match pixel::settle(integrator, camera, pixel, among) {
         Ok(bytes) => Ok((bytes, integrator.judge.touches)),
         Err(_) => Err(integrator.given_up),
+    }
+}
+
+/// What rows of pixels have taken, of as many as are traced at once.
+#[derive(Debug)]
+struct RowWork {
+    max: u64,
+    /// The last row of each remainder, and what it has taken.
+    rows: [(u32, u64); MAX_ROWS],
+}
+
+impl RowWork {
+    fn new(max: u64) -> Self {
+        Self { max, rows: [(0, 0); MAX_ROWS] }
+    }
+
+    fn of(&mut self, row: u32) -> &mut u64 {
+        let (last, work) = &mut self.rows[row as usize % MAX_ROWS];
+        if *last != row {
+            (*last, *work) = (row, 0);
+        }
+        work
+    }
+
+    fn is_spent(&mut self, row: u32) -> bool {
+        let max = self.max;
+        *self.of(row) >= max
+    }
+
+    fn spend(&mut self, row: u32, work: u64) {
+        let spent = self.of(row);
+        *spent = spent.saturating_add(work);
     }
 }
 

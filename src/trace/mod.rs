@@ -368,7 +368,7 @@ impl<'a, 'p> Settler<'a, 'p> {
             return Some(bytes);
         }
         if tracer.referee.is_some()
-            && let Some(bytes) = self.long.settle(tracer.long_cameras(), &pixel, among, self.fine.given_up)
+            && let Some(bytes) = self.long.settle(tracer.long_cameras(), row, &pixel, among, self.fine.given_up)
         {
             self.tell_touches(column, row, self.long.touches);
             self.counts.long_pixels += 1;
