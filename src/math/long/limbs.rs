@@ -1,6 +1,6 @@
 //! Digits: whole-number arithmetic on limbs of 64 bits, the most significant first.
 //!
-//! A slice `d` stands for the fraction Σ d[i]·2^(−64(i + 1)), below 1.
+//! A slice `d` stands for the fraction Σ dᵢ·2^(−64(i + 1)), below 1.
 
 /// Multiplies two fractions that begin with a 1 into as many limbs as `product` has, and tells whether anything was
 /// left out: at most 2·n + 1 units in the last of its n places, always from above.

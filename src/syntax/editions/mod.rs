@@ -1,6 +1,6 @@
 //! The editions of the language: every year the course changed its commands or the order of their arguments.
 //!
-//! clisc reads the edition 2018. [`FORMS`] is the one table of what each edition has; [`judge`] reads a scene under the
+//! clisc reads the edition 2018. [`FORMS`] is the one table of what each edition has; [`judge()`] reads a scene under the
 //! forms of all editions and finds out which of them it is written in, where 2018 does not fit. An order of arguments is
 //! a property of a whole file: no line is mended towards 2018 when the file is of another edition.
 //!
