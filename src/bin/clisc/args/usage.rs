@@ -1,4 +1,4 @@
-//! What is said to arguments that clap does not take.
+//! Answers to arguments that clap refuses.
 
 use std::path::Path;
 

@@ -244,7 +244,7 @@ impl Session<'_> {
         let error = match error {
             ExecError::Refused(diagnostics) => {
                 self.print_diagnostics(scene, &diagnostics)?;
-                // What is protected is no fault of the scene.
+                // A protected file is a fault of the environment, not of the scene.
                 let is_protected = diagnostics.iter().any(|found| found.code == &codes::READ_ONLY);
                 return Ok(if is_protected { Outcome::Environment } else { Outcome::SceneErrors });
             }
@@ -290,7 +290,8 @@ impl Session<'_> {
         Ok(())
     }
 
-    /// Warns of images with pixels that are not proved, whether or not other warnings are asked for; of drafts that is no news.
+    /// Warns of images with pixels that are not proved, whether or not other warnings are asked for. A draft proves nothing, so
+    /// it gets the warning only where a proof is required.
     fn warn_of_unproved(&self, place: &Place, reports: &[WriteReport]) {
         let is_draft = self.settings.precision == Precision::F32 && !self.args.require_proof;
         for report in reports.iter().filter(|report| report.n_unproved() > 0 && !is_draft) {
